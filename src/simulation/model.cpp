@@ -41,7 +41,7 @@ Model::Model(SpringNetwork network, SimulatorSettings settings, std::shared_ptr<
   }
 }
 
-std::int64_t Model::built_count() { return built; }
+BuildCounts Model::build_counts() { return {.models = built, .bounds = bounds_count()}; }
 
 std::shared_ptr<const Model> Model::build(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles) {
   std::unique_ptr<Scratch> scratch;

@@ -17,6 +17,11 @@ namespace sprung {
 
 struct Scratch;
 
+struct BuildCounts {
+  std::int64_t models = 0;
+  std::int64_t bounds = 0;  ///< of the largest stable step
+};
+
 /// The network with all its springs and pins, the settings, the obstacles, and what was found at the start. All members are
 /// thread-safe: many simulators share one model.
 class Model {
@@ -46,8 +51,8 @@ class Model {
   /// The state at time 0.
   [[nodiscard]] const SimulationState& initial_state() const { return initial_state_; }
 
-  /// The number of models that this process has built, for tests.
-  [[nodiscard]] static std::int64_t built_count();
+  /// What this process has built so far, for tests.
+  [[nodiscard]] static BuildCounts build_counts();
 
  private:
   Model(SpringNetwork network, SimulatorSettings settings, std::shared_ptr<const ObstacleSet> obstacles,

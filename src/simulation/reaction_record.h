@@ -16,8 +16,8 @@ namespace sprung {
 /// Adds the recorded impulses on particles to the pins that hold them in an activity, and sets these to zero.
 void collect_reactions(const SpringNetwork& network, const Activity& activity, SimulationState& state);
 
-/// The mean forces over `duration` [s]: of all pins of the network, of particles that a program fixed, by
-/// name, and of attachments. Zero if the duration is zero.
+/// The mean forces over `duration` [s] of all pins of the network and then of its attachments, each in the order in which they were
+/// added. Zero if the duration is zero.
 [[nodiscard]] std::vector<Reaction> mean_reactions(const SpringNetwork& network, const SimulationState& state, double duration);
 
 }  // namespace sprung

@@ -5,6 +5,7 @@
 #include "dynamics/constraints/enclosed_volume.h"
 #include "dynamics/forces/material_dampers.h"
 #include "dynamics/forces/shared_force.h"
+#include "dynamics/forces/surface_air_force.h"
 #include "network/model/spring_failure.h"
 #include "simulation/model/network_forces.h"
 #include "simulation/step/step_check.h"
@@ -14,40 +15,39 @@
 
 namespace sprung {
 
-Workspace::Workspace(const Model& model, const SpringNetwork& network, const ObstacleSet& obstacles, const Control& control)
-    : forces(network_forces(network, model.settings(),
-                            splits_dampers(model.settings(), model.bounds()) ? MaterialDampers::apart : MaterialDampers::within)),
-      integrator(make_integrator(model.settings().integrator, network)),
-      constraints(network, model.settings(), steady_acceleration(network, model.settings()), obstacles, *integrator),
-      pin_paths(network, obstacles.obstacles(), model.settings().step),
-      planner(network, model.settings(), constraints.limit()),
+Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
+                     const ObstacleSet& obstacles, const Control& control)
+    : forces(
+          network_forces(network, settings, splits_dampers(settings, bounds) ? MaterialDampers::apart : MaterialDampers::within)),
+      attachments(network.attachments.empty()
+                      ? std::optional<Attachments>()
+                      : std::optional<Attachments>(std::in_place, network, obstacles, settings.step,
+                                                   std::holds_alternative<ImplicitEulerSettings>(settings.integrator))),
+      integrator(make_integrator(settings.integrator, network)),
+      constraints(network, settings, steady_acceleration(network, settings), obstacles, *integrator),
+      pin_paths(network, obstacles.obstacles(), settings.step),
+      planner(network, settings, constraints.limit()),
       divergence(network),
-      energy_watch(network, model.settings(), obstacles.obstacles(), forces),
+      energy_watch(network, settings, obstacles.obstacles(), forces),
       groups(network),
-      rest(network, groups, constraints.limit(), model.settings().gravity.norm()),
-      surroundings(network, obstacles, groups, model.settings().step, model.settings().gravity.norm()) {
-  const SimulatorSettings& settings = model.settings();
+      rest(network, groups, constraints.limit(), settings.gravity),
+      surroundings(network, obstacles, groups, settings.step, settings.gravity) {
   if (settings.perturb) symmetry.emplace(network, settings.seed);
-  if (!network.attachments.empty()) {
-    const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
-    attachments.emplace(network, obstacles, settings.step, implicit);
-  }
-  if (splits_dampers(settings, model.bounds())) {
+  if (splits_dampers(settings, bounds)) {
     const double most = most_damping_rate(settings.step);
-    integrator->set_dampers(material_dampers(network, most), std::min(most, model.bounds().material_damping));
+    integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
   }
-  add_forces(model, network, obstacles, control);
+  add_forces(network, settings, obstacles, control);
   add_constraints(network, control);
 }
 
 /// Those that network_forces() does not make.
-void Workspace::add_forces(const Model& model, const SpringNetwork& network, const ObstacleSet& obstacles, const Control& control) {
-  const SimulatorSettings& settings = model.settings();
+void Workspace::add_forces(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles,
+                           const Control& control) {
   if (acts_on_faces(network, settings)) {
-    auto force = std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(),
-                                                   air_step(settings, settings.step));
-    surface_air = force.get();
-    forces.push_back(std::move(force));
+    const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
+    forces.push_back(std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(),
+                                                       implicit ? 0.0 : settings.step));
   }
   if (settings.contact.response == ContactSettings::Response::penalty && !obstacles.empty()) {
     auto force =
@@ -71,18 +71,21 @@ void Workspace::add_constraints(const SpringNetwork& network, const Control& con
   for (const std::shared_ptr<Constraint>& constraint : control.constraints) constraints.add(constraint);
 }
 
-Scratch::Scratch(const Model& model, const Control& control, const SimulationState& state) : obstacles(model.obstacles()) {
+Scratch::Scratch(const Model& model, const Control& control, const SimulationState& state)
+    : settings(model.settings()), obstacles(model.obstacles()) {
   for (std::size_t k = 0; k < control.obstacle_materials.size(); ++k) {
     obstacles.set_material(static_cast<Index>(k), control.obstacle_materials[k]);
   }
+  settings.gravity = control.gravity.value_or(settings.gravity);
+  settings.wind = control.wind.value_or(settings.wind);
   tear_network(model, state);
+  steer(model, state);
   set_activity(state.activity, network);
   rebuild(model, control);
 }
 
 void Scratch::rebuild(const Model& model, const Control& control) {
-  work.reset();
-  work.emplace(model, network, obstacles, control);
+  work.emplace(network, settings, model.bounds(), obstacles, control);
 }
 
 bool Scratch::follow(const Model& model, const Control& control, const SimulationState& state) {
@@ -90,10 +93,40 @@ bool Scratch::follow(const Model& model, const Control& control, const Simulatio
   const bool changes = tears || state.activity != network.activity || !work;
   if (changes) work.reset();  // it refers to the network
   if (tears) tear_network(model, state);
+  if (tears || state.steering != steering_) steer(model, state);
   if (changes) set_activity(state.activity, network);
   copy_rest_lengths(state);
-  if (changes) rebuild(model, control);
+  if (changes) {
+    rebuild(model, control);
+  } else {
+    work->surroundings.note_motions();
+  }
   return changes;
+}
+
+void Scratch::follow_conditions(const Control& control) {
+  settings.gravity = control.gravity.value_or(settings.gravity);
+  settings.wind = control.wind.value_or(settings.wind);
+  for (const std::unique_ptr<Force>& force : work->forces) force->follow({.gravity = settings.gravity, .wind = settings.wind});
+  work->constraints.set_steady_acceleration(steady_acceleration(network, settings));
+  conditions_changed = true;
+}
+
+/// Pins that a program added, and the motions of pins and obstacles that it moves.
+void Scratch::steer(const Model& model, const SimulationState& state) {
+  network.pins = model.network().pins;
+  network.pins.insert(network.pins.end(), state.steering.added_pins.begin(), state.steering.added_pins.end());
+  for (const SteeredMotion& pin : state.steering.pins) network.pins[pin.number].motion = {.poses = pin.poses};
+  for (const SteeredMotion& before : steering_.obstacles) {
+    if (std::ranges::find(state.steering.obstacles, before.number, &SteeredMotion::number) != state.steering.obstacles.end())
+      continue;
+    const auto number = static_cast<Index>(before.number);
+    obstacles.set_motion(number, model.obstacles().obstacle(number).motion);
+  }
+  for (const SteeredMotion& obstacle : state.steering.obstacles) {
+    obstacles.set_motion(static_cast<Index>(obstacle.number), {.poses = obstacle.poses});
+  }
+  steering_ = state.steering;
 }
 
 void Scratch::tear_network(const Model& model, const SimulationState& state) {

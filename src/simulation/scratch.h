@@ -4,7 +4,6 @@
 #include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/attachments/attachments.h"
 #include "dynamics/contact/penalty_contact.h"
-#include "dynamics/forces/surface_air_force.h"
 #include "dynamics/integrators/integrator.h"
 #include "simulation/control.h"
 #include "simulation/model.h"
@@ -26,11 +25,11 @@ namespace sprung {
 
 /// The objects that make a step. All follow from the present network, the settings, the obstacles and the control.
 struct Workspace {
-  /// Keeps references to the network, the obstacles and the settings of the model.
-  Workspace(const Model& model, const SpringNetwork& network, const ObstacleSet& obstacles, const Control& control);
+  /// Keeps references to the network, the settings and the obstacles. The bounds are those of the model.
+  Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
+            const ObstacleSet& obstacles, const Control& control);
 
   Forces forces;
-  SurfaceAirForce* surface_air = nullptr;  ///< null unless the air acts on faces
   PenaltyContact* penalty = nullptr;       ///< null unless contact is by penalty
   std::optional<Attachments> attachments;  ///< none without attachments in the network
   std::unique_ptr<Integrator> integrator;
@@ -45,7 +44,8 @@ struct Workspace {
   Surroundings surroundings;
 
  private:
-  void add_forces(const Model& model, const SpringNetwork& network, const ObstacleSet& obstacles, const Control& control);
+  void add_forces(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles,
+                  const Control& control);
   void add_constraints(const SpringNetwork& network, const Control& control);
 };
 
@@ -55,15 +55,17 @@ struct Scratch {
   Scratch(const Model& model, const Control& control, const SimulationState& state);
   Scratch(const Scratch&) = delete;
 
-  /// Follows the springs and the activity of the state. If they changed, the workspace is a new one, without memory. Returns
-  /// whether it is.
+  /// Follows the springs, the activity and the steering of the state. If springs or the activity changed, the workspace is a new
+  /// one, without memory. Returns whether it is.
   bool follow(const Model& model, const Control& control, const SimulationState& state);
 
-  /// Makes the workspace anew.
-  void rebuild(const Model& model, const Control& control);
+  /// Takes over gravity and wind. Costs nothing for each particle.
+  void follow_conditions(const Control& control);
 
   SpringNetwork network;            ///< of the present
+  SimulatorSettings settings;       ///< of the present
   ObstacleSet obstacles;            ///< of the present
+  bool conditions_changed = false;  ///< since the last step
   std::vector<Index> springs_left;  ///< the numbers in the model of its springs, ascending
   std::optional<Workspace> work;    ///< none only while it is made
   SimulationState begin;            ///< of the step
@@ -72,13 +74,11 @@ struct Scratch {
  private:
   void tear_network(const Model& model, const SimulationState& state);
   void copy_rest_lengths(const SimulationState& state);
+  void steer(const Model& model, const SimulationState& state);
+  void rebuild(const Model& model, const Control& control);
 
   std::vector<char> broken_;  ///< springs of the model that `network` lacks
+  Steering steering_;         ///< of which the network and the obstacles have the motions
 };
-
-/// The step as SurfaceAirForce takes it.
-[[nodiscard]] inline double air_step(const SimulatorSettings& settings, double dt) {
-  return std::holds_alternative<ImplicitEulerSettings>(settings.integrator) ? 0.0 : dt;
-}
 
 }  // namespace sprung

@@ -68,6 +68,18 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   problems.throw_if_any();
 }
 
+/// Pins that a program added go on in a model with other pins. Those of the model stand at their keyframes again.
+void keep_added_pins(const std::vector<Index>& pin_of, std::size_t count_before, std::size_t count, SimulationState& state) {
+  Steering& steering = state.steering;
+  std::erase_if(steering.pins, [&](const SteeredMotion& pin) { return pin.number < count_before; });
+  for (SteeredMotion& pin : steering.pins) pin.number += count - count_before;
+  state.activity.phases.insert(state.activity.phases.end(), steering.added_pins.size(), PinPhase::holding);
+  for (std::size_t i = 0; i < pin_of.size(); ++i) {
+    const auto pin = static_cast<std::size_t>(pin_of[i]);
+    if (pin_of[i] != kNone && pin >= count_before) state.activity.pin_of[i] = static_cast<Index>(pin + count - count_before);
+  }
+}
+
 void check_entry(const std::string& key, std::size_t number, std::size_t count) {
   if (number < count) return;
   throw InputError(
@@ -77,6 +89,30 @@ void check_entry(const std::string& key, std::size_t number, std::size_t count) 
 void check_number(const std::string& key, double number, ProblemList& problems) {
   if (std::isfinite(number) && number >= 0.0) return;
   problems.add(key, format_number(number, 6), "must be finite and not negative", "");
+}
+
+void check_pose(const std::string& key, const RigidTransform& pose) {
+  constexpr double kRounding = 1.0e-9;
+  ProblemList problems;
+  const Matrix3 linear = pose.linear();
+  if (!pose.matrix().allFinite()) {
+    problems.add(key, "", "must be finite", "give a position in m and a rotation");
+  } else if (!linear.isUnitary(kRounding) || linear.determinant() < 0.0) {
+    problems.add(key, "", "must be a rotation and a translation", "give a rotation without scale, shear or reflection");
+  }
+  problems.throw_if_any();
+}
+
+void check_pin(const SpringNetwork& network, const std::vector<Index>& particles, const std::string& name) {
+  ProblemList problems;
+  const auto exists = [&](Index i) { return i >= 0 && i < network.particle_count(); };
+  if (particles.empty()) problems.add("pins." + name, "", "must contain at least one particle", "name a particle");
+  problems.require_each(
+      particles.size(), [&](std::size_t k) { return exists(particles[k]); },
+      [&](std::size_t k) { return std::to_string(particles[k]); },
+      {"pins." + name, "must be the number of a particle; there are " + std::to_string(network.particle_count()),
+       "count particles from 0"});
+  problems.throw_if_any();
 }
 
 }  // namespace
@@ -99,6 +135,9 @@ struct Simulator::Implementation {
   template <class Change>
   void change_awake(const Change& change);
   void change_activity(const Activity& activity);
+  void follow_conditions();
+  void steer(std::vector<SteeredMotion> Steering::*list, std::size_t number, const RigidTransform& present,
+             const RigidTransform& target);
   void change_model(std::shared_ptr<const Model> next);
   void change_control(Control next);
 
@@ -136,17 +175,41 @@ void Simulator::Implementation::change_activity(const Activity& activity) {
   stepper().make_transition(before);
 }
 
+/// Lets forces know gravity and wind. All particles wake in the next step.
+void Simulator::Implementation::follow_conditions() {
+  scratch->follow_conditions(control);
+  state.energy.is_stale = true;
+  stepper().wake_all();
+}
+
+/// Moves a pin or an obstacle in the next step.
+void Simulator::Implementation::steer(std::vector<SteeredMotion> Steering::*list, std::size_t number, const RigidTransform& present,
+                                      const RigidTransform& target) {
+  std::vector<SteeredMotion>& all = state.steering.*list;
+  const double now = stepper().time();
+  const double end = static_cast<double>(whole_steps(state) + 1) * model->settings().step;
+  auto steered = std::ranges::lower_bound(all, number, {}, &SteeredMotion::number);
+  const bool is_new = steered == all.end() || steered->number != number;
+  if (is_new) steered = all.insert(steered, {.number = number, .poses = {{now, present}}});
+  const BeforeTransition before = is_new ? stepper().before_transition() : BeforeTransition();
+  steered->poses.resize(1);
+  if (now > steered->poses[0].time) steered->poses.push_back({now, present});
+  steered->poses.push_back({end, target});
+  if (is_new) {
+    stepper().make_transition(before);
+  } else {
+    stepper().follow_steering();
+  }
+}
+
 void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) {
   const BeforeTransition before = stepper().before_transition();
   SimulationState continued = state;
   continued.springs = carried_over(model->network(), state.springs, next->network());
   if (!have_same_pins(model->network(), next->network())) {
-    Activity activity = all_free(next->network());
-    for (std::size_t i = 0; i < activity.pin_of.size(); ++i) {
-      if (state.activity.pin_of[i] == kFixedInPlace) activity.pin_of[i] = kFixedInPlace;
-    }
-    change_pins(next->network().pins, due_before(whole_steps(state), model->settings().step), activity);
-    continued.activity = std::move(activity);
+    continued.activity = all_free(next->network());
+    keep_added_pins(state.activity.pin_of, model->network().pins.size(), next->network().pins.size(), continued);
+    change_pins(next->network().pins, due_before(whole_steps(state), model->settings().step), continued.activity);
   }
   auto its_scratch = std::make_unique<Scratch>(*next, control, continued);
   Stepper(*next, control, continued, *its_scratch).inherit(before, *model);
@@ -205,22 +268,32 @@ void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings)
 }
 
 void Simulator::set_gravity(const Vector3& acceleration) {
-  SimulatorSettings settings = model()->settings();
-  settings.gravity = acceleration;
-  continue_with(model()->network(), std::move(settings));
+  if (!acceleration.allFinite() || settings().air_surface.quadratic) {  // the largest stable step counts on the speed of a fall
+    SimulatorSettings changed = settings();
+    changed.gravity = acceleration;
+    continue_with(model()->network(), std::move(changed));
+    return;
+  }
+  implementation_->control.gravity = acceleration;
+  implementation_->follow_conditions();
 }
 
 void Simulator::set_air(double drag, const Wind& wind) {
-  SimulatorSettings settings = model()->settings();
-  settings.air_drag = drag;
-  settings.wind = wind;
-  continue_with(model()->network(), std::move(settings));
+  if (drag != settings().air_drag || settings().air_surface.quadratic || !std::isfinite(wind.max_speed())) {
+    SimulatorSettings changed = settings();
+    changed.air_drag = drag;
+    changed.wind = wind;
+    continue_with(model()->network(), std::move(changed));
+    return;
+  }
+  implementation_->control.wind = wind;
+  implementation_->follow_conditions();
 }
 
 void Simulator::set_stretch_limit(const std::optional<StretchLimitSettings>& limit) {
-  SimulatorSettings settings = model()->settings();
-  settings.stretch_limit = limit;
-  continue_with(model()->network(), std::move(settings));
+  SimulatorSettings changed = settings();
+  changed.stretch_limit = limit;
+  continue_with(model()->network(), std::move(changed));
 }
 
 void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness, double damping) {
@@ -238,7 +311,7 @@ void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness,
     springs.stiffness[s] = stiffness;
     springs.damping[s] = damping;
   }
-  continue_with(std::move(network), model()->settings());
+  continue_with(std::move(network), settings());
 }
 
 void Simulator::set_body_material(std::size_t body, const ContactMaterial& material) {
@@ -249,7 +322,7 @@ void Simulator::set_body_material(std::size_t body, const ContactMaterial& mater
   check_material("bodies." + changed.name, material, problems);
   problems.throw_if_any();
   changed.material = material;
-  continue_with(std::move(network), model()->settings());
+  continue_with(std::move(network), settings());
 }
 
 void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMaterial& material) {
@@ -261,15 +334,44 @@ void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMateria
   control.obstacle_materials.clear();
   for (const Obstacle& present : obstacles()) control.obstacle_materials.push_back(present.material);
   control.obstacle_materials[obstacle] = material;
-  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+  if (material.thickness != obstacles()[obstacle].material.thickness) {  // regions and searches depend on it
+    implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+    return;
+  }
+  implementation_->control = std::move(control);
+  implementation_->scratch->obstacles.set_material(static_cast<Index>(obstacle), material);
+  implementation_->stepper().wake_all();
 }
 
-void Simulator::pin(Index particle) {
-  if (state().activity.is_pinned(particle)) return;
-  Activity activity = state().activity;
-  activity.asleep.clear();
-  activity.pin_of[particle] = kFixedInPlace;
-  implementation_->change_awake([&] { implementation_->change_activity(activity); });
+std::size_t Simulator::pin(Index particle) {
+  const Body& body = network().body_of(particle);
+  return pin({particle}, body.name + ".particles[" + std::to_string(particle - body.first_particle) + "]");
+}
+
+std::size_t Simulator::pin(const std::vector<Index>& particles, const std::string& name) {
+  check_pin(network(), particles, name);
+  if (particles.size() == 1 && state().activity.is_pinned(particles[0])) return state().activity.pin_of[particles[0]];
+  const auto known = std::ranges::find(network().pins, name, &Pin::name);
+  const auto number = static_cast<std::size_t>(known - network().pins.begin());
+  implementation_->change_awake([&] {
+    const BeforeTransition before = implementation_->stepper().before_transition();
+    SimulationState& state = implementation_->state;
+    if (known == network().pins.end()) {
+      Pin& added = state.steering.added_pins.emplace_back();
+      added.name = name;
+      state.activity.phases.push_back(PinPhase::holding);
+    }
+    Pin& added = state.steering.added_pins[number - model()->network().pins.size()];
+    added.particles = particles;
+    added.from = time();
+    added.origin = state.x(Eigen::all, particles).rowwise().mean();
+    std::erase_if(state.steering.pins, [&](const SteeredMotion& steered) { return steered.number == number; });
+    for (const Index i : particles) {
+      if (!state.activity.is_pinned(i)) state.activity.pin_of[i] = static_cast<Index>(number);
+    }
+    implementation_->stepper().make_transition(before);
+  });
+  return number;
 }
 
 void Simulator::release(Index particle) {
@@ -278,12 +380,45 @@ void Simulator::release(Index particle) {
   Activity activity = state().activity;
   activity.asleep.clear();
   activity.pin_of[particle] = kNone;
-  if (pin != kFixedInPlace && network().pins[pin].holds_always()) {  // the largest stable step counts on this pin
-    SpringNetwork freed = model()->network();
+  if (static_cast<std::size_t>(pin) < model()->network().pins.size() && network().pins[pin].holds_always()) {
+    SpringNetwork freed = model()->network();  // the largest stable step counts on this pin
     set_activity(activity, freed);
     check_step(settings(), simulation_bounds(freed, settings(), !obstacles().empty(), implementation_->control.forces));
   }
   implementation_->change_awake([&] { implementation_->change_activity(activity); });
+}
+
+RigidTransform Simulator::pin_pose(std::size_t pin) const {
+  check_entry("pins", pin, network().pins.size());
+  const Pin& its = network().pins[pin];
+  if (its.obstacle != kNone) return obstacle_pose(static_cast<std::size_t>(its.obstacle));
+  return its.motion.pose(RigidTransform(Eigen::Translation3d(its.origin)), time());
+}
+
+RigidTransform Simulator::obstacle_pose(std::size_t obstacle) const {
+  check_entry("obstacles", obstacle, obstacles().size());
+  return obstacles()[obstacle].motion.pose(obstacles()[obstacle].rest_pose, time());
+}
+
+void Simulator::move_pin(std::size_t pin, const RigidTransform& pose) {
+  const RigidTransform present = pin_pose(pin);
+  const Pin& moved = network().pins[pin];
+  const std::string key = "pins." + moved.name + ".pose";
+  if (moved.obstacle != kNone) {
+    const std::string& obstacle = obstacles()[static_cast<std::size_t>(moved.obstacle)].name;
+    throw InputError({.key = key,
+                      .value = "",
+                      .rule = "cannot be given: the pin follows the obstacle \"" + obstacle + "\"",
+                      .remedy = "move the obstacle"});
+  }
+  check_pose(key, pose);
+  implementation_->steer(&Steering::pins, pin, present, pose);
+}
+
+void Simulator::move_obstacle(std::size_t obstacle, const RigidTransform& pose) {
+  const RigidTransform present = obstacle_pose(obstacle);
+  check_pose("obstacles." + obstacles()[obstacle].name + ".pose", pose);
+  implementation_->steer(&Steering::obstacles, obstacle, present, pose);
 }
 
 void Simulator::add_force(std::shared_ptr<Force> force) {
@@ -319,7 +454,7 @@ void Simulator::remove_constraint(const Constraint& constraint) {
 
 const std::shared_ptr<const Model>& Simulator::model() const { return implementation_->model; }
 const SpringNetwork& Simulator::network() const { return implementation_->network(); }
-const SimulatorSettings& Simulator::settings() const { return model()->settings(); }
+const SimulatorSettings& Simulator::settings() const { return implementation_->scratch->settings; }
 const SimulationState& Simulator::state() const { return implementation_->state; }
 const std::vector<Obstacle>& Simulator::obstacles() const { return implementation_->scratch->obstacles.obstacles(); }
 ObstacleFrame Simulator::obstacle_frame() const { return implementation_->stepper().obstacles_now(); }

@@ -81,8 +81,10 @@ class Simulator {
   /// Wakes all particles.
   void wake();
 
-  void set_gravity(const Vector3& acceleration);  ///< [m/s^2]
-  void set_air(double drag, const Wind& wind);    ///< see SimulatorSettings
+  /// [m/s^2]. Costs less than a hundredth of a step, except with quadratic drag on faces: its bound depends on the speed of a fall.
+  void set_gravity(const Vector3& acceleration);
+  /// See SimulatorSettings. Another wind alone costs less than a hundredth of a step, with the same exception.
+  void set_air(double drag, const Wind& wind);
 
   /// Springs that exceed the new limit are shortened at once, as far as obstacles and bodies permit; velocities stay as they are.
   void set_stretch_limit(const std::optional<StretchLimitSettings>& limit);
@@ -94,10 +96,27 @@ class Simulator {
   void set_obstacle_material(std::size_t obstacle, const ContactMaterial& material);
 
   /// Fixes a particle where it is. Does nothing if it is pinned already. A pin of the network that begins later leaves it out.
-  void pin(Index particle);
+  /// Returns the number of its pin.
+  std::size_t pin(Index particle);
+
+  /// Fixes particles where they are, relative to each other; those that are pinned already stay with their pin. The name is that of
+  /// the reaction, and a pin of this name that a program added before ends. The pose of the pin is at the mean of the particles.
+  std::size_t pin(const std::vector<Index>& particles, const std::string& name);
 
   /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned.
   void release(Index particle);
+
+  // Steering. The next step moves a pin or an obstacle to a pose, on a line and with the shortest rotation; its velocity follows.
+  // It then stays there, whatever keyframes it had, until it is moved again. Call it before each step. The first call for a pin or
+  // an obstacle costs about as much as a few steps, others cost little. Throws InputError if the pose is not a rotation and a
+  // translation, or too far.
+
+  /// The rigid motion from the present pose to this one moves the particles of a pin. Not for pins that follow an obstacle.
+  void move_pin(std::size_t pin, const RigidTransform& pose);
+  void move_obstacle(std::size_t obstacle, const RigidTransform& pose);
+
+  [[nodiscard]] RigidTransform pin_pose(std::size_t pin) const;  ///< now; of a pin without motion: a translation to its origin
+  [[nodiscard]] RigidTransform obstacle_pose(std::size_t obstacle) const;  ///< now
 
   /// Adds an external force. The caller may change its parameters between steps. The force must not keep references to network().
   /// The largest stable step accounts for the elements that the force appends: it is found anew if there are any. Throws InputError

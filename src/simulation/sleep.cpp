@@ -60,6 +60,17 @@ void Stepper::wake_all() {
   RestDetector::forget(state_);
 }
 
+void Stepper::wake_driven() {
+  const std::vector<char> asleep = sleeping_groups();
+  if (std::ranges::count(asleep, 0) == static_cast<std::ptrdiff_t>(asleep.size())) return;
+  const Surroundings::Found found = work().surroundings.find(state_);
+  const std::vector<char> driven = with_neighbours(work().surroundings.driven(found, time()), found.pairs);
+  for (std::size_t p = 0; p < driven.size(); ++p) {
+    if (driven[p] != 0) state_.rest.sleepers[p] = 0;
+  }
+  wake_with_bodies(asleep);
+}
+
 /// A group at rest falls asleep if its neighbours are at rest too, and if it touches something, or a group does that is joined to
 /// it through others that sleep. Without contact nothing sleeps: a pendulum is slow at the end of each swing.
 void Stepper::add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed) {

@@ -65,13 +65,25 @@ class StateRules {
 
   void check_activity() {
     const Activity& activity = state_.activity;
-    require_size("activity.phases", activity.phases.size(), network().pins.size(), "pins");
+    const Steering& steering = state_.steering;
+    const std::size_t pins = network().pins.size() + steering.added_pins.size();
+    require_size("activity.phases", activity.phases.size(), pins, "pins");
     require_size("activity.pin_of", activity.pin_of.size(), particles(), "particles");
     if (!activity.asleep.empty()) require_size("activity.asleep", activity.asleep.size(), particles(), "particles");
-    const auto pins = std::min(activity.phases.size(), network().pins.size());
-    require_indices("activity.pin_of", activity.pin_of, [&](Index pin) {
-      return pin == kNone || pin == kFixedInPlace || (pin >= 0 && static_cast<std::size_t>(pin) < pins);
+    require_indices("activity.pin_of", activity.pin_of,
+                    [&](Index pin) { return pin == kNone || (pin >= 0 && static_cast<std::size_t>(pin) < pins); });
+    require_each("steering.added_pins", steering.added_pins, [&](const Pin& pin) {
+      return std::ranges::all_of(pin.particles, [&](Index i) { return is_particle(i); }) && std::isfinite(pin.from);
     });
+    const auto is_sound = [&](const SteeredMotion& motion, std::size_t count) {
+      return motion.number < count && !motion.poses.empty() && std::ranges::all_of(motion.poses, [](const TimedPose& key) {
+               return std::isfinite(key.time) && key.pose.matrix().allFinite();
+             });
+    };
+    require_each("steering.pins", steering.pins, [&](const SteeredMotion& motion) { return is_sound(motion, pins); });
+    const std::size_t obstacles = owner_.model.obstacles().obstacles().size();
+    require_each("steering.obstacles", steering.obstacles,
+                 [&](const SteeredMotion& motion) { return is_sound(motion, obstacles); });
   }
 
   void check_springs() {
@@ -199,7 +211,7 @@ class StateRules {
     problems_.require_each(
         entries.size(), [&](std::size_t entry) { return good(entries[entry]); },
         [](std::size_t /*entry*/) { return std::string(); },
-        {"state." + key, "must have finite numbers, and name particles, obstacles and attachments that exist", kRemedy});
+        {"state." + key, "must have finite numbers, and name particles, pins, obstacles and attachments that exist", kRemedy});
   }
 
   const StateOwner& owner_;

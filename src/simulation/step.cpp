@@ -74,6 +74,8 @@ std::optional<StepReport> Stepper::attempt(PlanReason reason) {
     if (obstacles().moves()) choose_sleepers();
     return StepReport{};
   }
+  if (std::exchange(scratch_.conditions_changed, false)) integrator().resume(state_, work().forces, dt());
+  if (std::exchange(state_.energy.is_stale, false)) note_change();
   scratch_.begin = state_;
   has_begun_ = true;
   const bool any_sleeps = !network().activity.asleep.empty();
@@ -253,10 +255,8 @@ void Stepper::record_gain(Index particle, const Vector3& velocity_before) {
   state_.impulses.on_pinned.col(particle) -= network().masses[particle] * (state_.v.col(particle) - velocity_before);
 }
 
-/// Tells the forces that depend on the step.
 void Stepper::step_length_changed() {
-  if (work().penalty != nullptr) work().penalty->set_step(dt());
-  if (work().surface_air != nullptr) work().surface_air->set_step(air_step(settings(), dt()));
+  for (const std::unique_ptr<Force>& force : work().forces) force->set_step(dt());
 }
 
 std::vector<ContactNormal> Stepper::contact_normals() const {

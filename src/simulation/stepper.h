@@ -44,6 +44,10 @@ class Stepper {
   void inherit(const BeforeTransition& before, const Model& former);
 
   void wake_all();
+  /// Wakes what sleeps near pins and obstacles that move.
+  void wake_driven();
+  /// Lets pins and obstacles move as `state.steering` now says.
+  void follow_steering();
   void begin_recording();
   void note_change() { EnergyWatch::note_change(energies(), state_.energy); }
 
@@ -102,7 +106,7 @@ class Stepper {
   void add_impulses_of_sleepers(const RecordedImpulses& before);
 
   [[nodiscard]] const SpringNetwork& network() const { return scratch_.network; }
-  [[nodiscard]] const SimulatorSettings& settings() const { return model_.settings(); }
+  [[nodiscard]] const SimulatorSettings& settings() const { return scratch_.settings; }
   [[nodiscard]] const ObstacleSet& obstacles() const { return scratch_.obstacles; }
   [[nodiscard]] Workspace& work() const { return *scratch_.work; }
   [[nodiscard]] Integrator& integrator() const { return *work().integrator; }

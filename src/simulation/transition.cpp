@@ -68,8 +68,7 @@ void Stepper::correct_positions(double dt) {
 /// Before this, pins take the speed with which they begin, which is no impulse.
 void Stepper::begin_recording() {
   if (!settings().record_forces) return;
-  state_.reactions.since = time();
-  for (auto& reaction : state_.reactions.impulses) reaction.second.setZero();
+  state_.reactions = {.since = time()};
   state_.impulses = {.on_pinned = Points::Zero(3, network().particle_count()),
                      .of_springs = Scalars::Zero(network().springs.count())};
   if (!state_.last_impulses.on()) state_.last_impulses = state_.impulses;
@@ -161,7 +160,7 @@ bool Stepper::change_pins(const BeforeTransition& before) {
   collect_reactions(network(), before.activity, state_);
   for (Index i = 0; i < network().particle_count(); ++i) {
     const Index pin = state_.activity.pin_of[i];
-    if (pin == kNone || (pin != kFixedInPlace && network().pins[pin].moves())) continue;
+    if (pin == kNone || network().pins[pin].moves()) continue;
     state_.v.col(i).setZero();
     if (state_.impulses.on()) record_gain(i, v_before.col(i));
   }
@@ -188,6 +187,13 @@ void Stepper::restore(const SimulationState& former) {
     work().pin_paths.register_pins(state_);
     load();
   }
+}
+
+void Stepper::follow_steering() {
+  scratch_.follow(model_, control_, state_);
+  work().pin_paths.register_pins(state_);
+  move_pins(time());
+  wake_driven();
 }
 
 void Stepper::enter() {

@@ -57,6 +57,11 @@ PosedObstacle posed_in(const Obstacle& obstacle, std::shared_ptr<const ObstacleS
 }  // namespace
 
 ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)), shapes_(checked_shapes(obstacles_)) {
+  pose();
+}
+
+/// At time 0, where the broad phase has the obstacles that never change.
+void ObstacleSet::pose() {
   auto at_start = std::make_shared<PosedObstacles>();
   std::vector<RigidTransform> poses;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
@@ -68,6 +73,12 @@ ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move
   }
   broad_phase_ = std::make_shared<const BroadPhase>(obstacles_, shapes_, poses);
   at_start_ = std::move(at_start);
+}
+
+void ObstacleSet::set_motion(Index k, const Motion& motion) {
+  const bool changed_before = changes(static_cast<std::size_t>(k));
+  obstacles_[static_cast<std::size_t>(k)].motion = motion;
+  if (changes(static_cast<std::size_t>(k)) != changed_before) pose();
 }
 
 void ObstacleSet::set_material(Index k, const ContactMaterial& material) {

@@ -33,12 +33,16 @@ class ObstacleSet {
 
   [[nodiscard]] double max_thickness() const { return max_thickness_; }  ///< [m]
 
+  /// Replaces the motion of obstacle k, whose present pose must not change by it. Not thread-safe.
+  void set_motion(Index k, const Motion& motion);
+
   /// Replaces the contact material of obstacle k. Requires a material that keeps the rules of ContactMaterial. Not thread-safe.
   void set_material(Index k, const ContactMaterial& material);
 
  private:
   friend class ObstacleFrame;
 
+  void pose();
   [[nodiscard]] bool changes(std::size_t k) const;
   /// All obstacles in an interval [s].
   [[nodiscard]] std::shared_ptr<const PosedObstacles> posed(double begin, double end) const;

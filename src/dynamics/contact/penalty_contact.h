@@ -16,8 +16,7 @@ class PenaltyContact final : public Force {
   /// which are at time 0 until prepare().
   PenaltyContact(const SpringNetwork& network, const ObstacleSet& obstacles, double stiffness, double damping, double dt);
 
-  /// Steps are `dt` [s] long from now on.
-  void set_step(double dt) { dt_ = dt; }
+  void set_step(double dt) override { dt_ = dt; }
 
   [[nodiscard]] std::string name() const override { return "penalty contact"; }
 

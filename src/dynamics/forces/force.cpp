@@ -24,6 +24,12 @@ std::string Force::name() const { return "added forces"; }
 
 void Force::prepare(double) {}
 
+void Force::follow(const Conditions&) {}
+
+void Force::set_step(double) {}
+
+std::optional<std::vector<Index>> Force::touched() const { return std::nullopt; }
+
 bool Force::is_constant() const { return false; }
 
 void Force::couple(std::vector<ParticlePair>&) const {}

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,12 +16,19 @@ namespace sprung {
 
 struct ForceDerivatives;
 struct ParticlePair;
+class Wind;
 
 /// The state at which forces are evaluated.
 struct Kinematics {
   const Points& x;    ///< positions [m], 3 x n
   const Points& v;    ///< velocities [m/s], 3 x n
   double time = 0.0;  ///< [s]
+};
+
+/// What acts from outside on all particles, and may change between two steps.
+struct Conditions {
+  const Vector3& gravity;  ///< [m/s^2]
+  const Wind& wind;
 };
 
 /// A spring and a damper on one weighted sum w_1 u_1 + w_2 u_2 + ... of displacements u [m]: stiffness k and damping c have the
@@ -59,6 +67,15 @@ class Force {
 
   /// Prepares the force for evaluations at `time` [s]. Not thread-safe. Default: does nothing.
   virtual void prepare(double time);
+
+  /// Takes over new conditions. Default: does nothing.
+  virtual void follow(const Conditions& conditions);
+
+  /// The steps of explicit schemes are `dt` [s] long from now on. Default: does nothing.
+  virtual void set_step(double dt);
+
+  /// The particles to which the force is applied, now or later; none: any. Those of an added force stay awake. Default: any.
+  [[nodiscard]] virtual std::optional<std::vector<Index>> touched() const;
 
   /// Whether `add` adds the same force at all positions, velocities and times. Default: no.
   [[nodiscard]] virtual bool is_constant() const;

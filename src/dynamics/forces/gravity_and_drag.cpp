@@ -12,17 +12,18 @@ constexpr Index kParticleChunk = 8192;
 
 }  // namespace
 
-Gravity::Gravity(const SpringNetwork& network, const Vector3& acceleration) : weights_(acceleration * network.masses.transpose()) {}
+Gravity::Gravity(const SpringNetwork& network, const Vector3& acceleration)
+    : masses_(network.masses), acceleration_(acceleration) {}
 
 void Gravity::add(const Kinematics&, Points& forces) const {
-  parallel_chunks(static_cast<Index>(weights_.cols()), kParticleChunk, [&](Index begin, Index end) {
-    forces.middleCols(begin, end - begin) += weights_.middleCols(begin, end - begin);
+  parallel_chunks(static_cast<Index>(masses_.size()), kParticleChunk, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) forces.col(i) += masses_[i] * acceleration_;
   });
 }
 
 double Gravity::energy(const Points& positions) const {
   double energy = 0.0;
-  for (Index i = 0; i < positions.cols(); ++i) energy -= weights_.col(i).dot(positions.col(i));
+  for (Index i = 0; i < positions.cols(); ++i) energy -= (masses_[i] * acceleration_).dot(positions.col(i));
   return energy;
 }
 

@@ -10,15 +10,18 @@ namespace sprung {
 /// m g; energy -m g . x.
 class Gravity final : public Force {
  public:
-  Gravity(const SpringNetwork& network, const Vector3& acceleration);  ///< [m/s^2]
+  /// `acceleration` in m/s^2. Keeps a reference to the network.
+  Gravity(const SpringNetwork& network, const Vector3& acceleration);
   [[nodiscard]] std::string name() const override { return "gravity"; }
+  void follow(const Conditions& conditions) override { acceleration_ = conditions.gravity; }
   [[nodiscard]] bool is_constant() const override { return true; }
   void add(const Kinematics& at, Points& forces) const override;
   [[nodiscard]] double energy(const Points& positions) const override;
   [[nodiscard]] EnergyKind energy_kind() const override { return EnergyKind::gravity; }
 
  private:
-  Points weights_;  ///< m g of each particle [N]
+  const Scalars& masses_;
+  Vector3 acceleration_;
 };
 
 /// Linear air drag, -c A (v - wind). A is the network's drag area: c is by length [kg/(m s)] for ropes, by area [kg/(m^2 s)] for
@@ -27,6 +30,7 @@ class AirDrag final : public Force {
  public:
   AirDrag(const SpringNetwork& network, double drag, Wind wind);  ///< drag >= 0
   [[nodiscard]] std::string name() const override { return "air drag"; }
+  void follow(const Conditions& conditions) override { wind_ = conditions.wind; }
   void add(const Kinematics& at, Points& forces) const override;
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
   void append_elements(std::vector<LinearElement>& elements) const override;

@@ -4,6 +4,7 @@
 #include "dynamics/forces/force.h"
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,9 @@ class SharedForce final : public Force {
 
   [[nodiscard]] std::string name() const override { return force_->name(); }
   void prepare(double time) override { force_->prepare(time); }
+  void follow(const Conditions& conditions) override { force_->follow(conditions); }
+  void set_step(double dt) override { force_->set_step(dt); }
+  [[nodiscard]] std::optional<std::vector<Index>> touched() const override { return force_->touched(); }
   [[nodiscard]] bool is_constant() const override { return force_->is_constant(); }
   void add(const Kinematics& at, Points& forces) const override { force_->add(at, forces); }
   void couple(std::vector<ParticlePair>& pairs) const override { force_->couple(pairs); }

@@ -28,8 +28,12 @@ class SurfaceAirForce final : public Force {
   /// any speed, for implicit schemes. Keeps a reference to the network.
   SurfaceAirForce(const SpringNetwork& network, const SurfaceDrag& drag, Wind wind, double gravity, double step);
 
-  /// Steps are `step` [s] long from now on.
-  void set_step(double step) { step_ = step; }
+  void set_step(double dt) override {
+    if (step_ > 0.0) step_ = dt;
+  }
+
+  /// Takes over the wind. Quadratic drag keeps the expected speed of the constructor.
+  void follow(const Conditions& conditions) override { wind_ = conditions.wind; }
 
   [[nodiscard]] std::string name() const override { return "air on faces"; }
   void add(const Kinematics& at, Points& forces) const override;

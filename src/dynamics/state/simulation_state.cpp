@@ -1,8 +1,37 @@
 #include "dynamics/state/simulation_state.h"
 
+#include "dynamics/state/state_bytes.h"
 #include "network/model/spring_network.h"
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+
 namespace sprung {
+
+bool Steering::operator==(const Steering& other) const {
+  const auto alike = [](const Pin& a, const Pin& b) { return a.name == b.name && a.particles == b.particles && a.from == b.from; };
+  return pins == other.pins && obstacles == other.obstacles && std::ranges::equal(added_pins, other.added_pins, alike);
+}
+
+bool SimulationState::operator==(const SimulationState& other) const {
+  const auto bytes = [](const SimulationState& state) {
+    std::string all;
+    StateBytes([&](const void* data, std::size_t size) { all.append(static_cast<const char*>(data), size); }).pass(state);
+    return all;
+  };
+  return bytes(*this) == bytes(other);
+}
+
+std::uint64_t hash(const SimulationState& state) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  StateBytes([&](const void* data, std::size_t size) {
+    for (const char byte : std::string_view(static_cast<const char*>(data), size)) {
+      hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+    }
+  }).pass(state);
+  return hash;
+}
 
 SimulationState initial_state(const SpringNetwork& network) {
   SimulationState state;

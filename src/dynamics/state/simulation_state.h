@@ -75,6 +75,7 @@ struct EnergyMemory {
   double stored = 0.0;           ///< energy of springs that was supplied slowly [J]
   double max_kinetic = 0.0;      ///< [J]
   double fastest_drive = 0.0;    ///< of pins and obstacles [m/s]
+  bool is_stale = false;         ///< energies have to be recorded as after a change, before the next step
 };
 
 /// Position of a particle when its pin began.
@@ -113,6 +114,23 @@ struct ReactionMemory {
   double since = 0.0;                         ///< begin of the interval [s]
 };
 
+/// A pin or an obstacle that a program moves.
+struct SteeredMotion {
+  std::size_t number = 0;          ///< of the pin or obstacle
+  std::vector<TimedPose> poses{};  ///< when it was first moved, at the begin of the last step in which it moves, and at its end
+
+  [[nodiscard]] bool operator==(const SteeredMotion&) const = default;
+};
+
+/// What a program did to pins and obstacles.
+struct Steering {
+  std::vector<Pin> added_pins{};           ///< numbered after those of the model
+  std::vector<SteeredMotion> pins{};       ///< by number
+  std::vector<SteeredMotion> obstacles{};  ///< by number
+
+  [[nodiscard]] bool operator==(const Steering& other) const;
+};
+
 struct SimulationState {
   std::int64_t step = 0;    ///< number of completed steps
   std::int64_t frame = 0;   ///< number of completed frames
@@ -126,6 +144,7 @@ struct SimulationState {
   Points x_previous;  ///< Verlet's positions one step ago [m], 3 x n
   Activity activity{};
   SpringState springs{};
+  Steering steering{};
   ContactMemory contact{};
   RestMemory rest{};
   EnergyMemory energy{};
@@ -135,7 +154,14 @@ struct SimulationState {
   RecordedImpulses impulses{};       ///< empty unless the settings ask for forces
   RecordedImpulses last_impulses{};  ///< of the last step; a step adds those of sleeping particles again
   ReactionMemory reactions{};
+
+  /// Bit by bit.
+  [[nodiscard]] bool operator==(const SimulationState& other) const;
 };
+
+/// A number that states share if they are equal bit by bit, and else almost never (FNV-1a; Fowler, Noll and Vo 1991). The same on
+/// every machine with the same byte order.
+[[nodiscard]] std::uint64_t hash(const SimulationState& state);
 
 /// The number of steps of the present length from time 0 to the begin of the current step. Times are this number, or a fraction
 /// more, times the step length.

@@ -57,6 +57,22 @@ Keyframe keyframe_at(const Motion& motion, double time) {
   return {time, (1.0 - w) * a.position + w * b.position, (1.0 - w) * a.rotation + w * b.rotation};
 }
 
+/// The angle of a rotation [degrees].
+double angle_between(const RigidTransform& a, const RigidTransform& b) {
+  return Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear())) * 180.0 / std::numbers::pi;
+}
+
+RigidTransform pose_at(const std::vector<TimedPose>& poses, double time) {
+  const auto [before, after, fraction] = span_at(poses, time);
+  const RigidTransform& a = poses[before].pose;
+  const RigidTransform& b = poses[after].pose;
+  if (fraction == 0.0) return a;
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = Eigen::Quaterniond(a.linear()).slerp(fraction, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+  pose.translation() = (1.0 - fraction) * a.translation() + fraction * b.translation();
+  return pose;
+}
+
 }  // namespace
 
 Matrix3 rotation_from_degrees(const Vector3& degrees) {
@@ -65,16 +81,26 @@ Matrix3 rotation_from_degrees(const Vector3& degrees) {
 }
 
 bool Motion::moves() const {
+  const auto moved = [](const TimedPose& a, const TimedPose& b) { return a.pose.matrix() != b.pose.matrix(); };
+  if (!poses.empty()) return std::adjacent_find(poses.begin(), poses.end(), moved) != poses.end();
   const auto differs = [](const Keyframe& a, const Keyframe& b) { return a.position != b.position || a.rotation != b.rotation; };
   return spin != Vector3::Zero() || std::adjacent_find(keyframes.begin(), keyframes.end(), differs) != keyframes.end();
 }
 
 double Motion::end() const {
+  if (!poses.empty()) return moves() ? poses.back().time : 0.0;
   if (spin != Vector3::Zero()) return std::numeric_limits<double>::infinity();
   return moves() ? keyframes.back().time : 0.0;
 }
 
 double Motion::rotation(double begin, double end) const {
+  if (!poses.empty()) {
+    double angles = 0.0;
+    for (std::size_t k = 1; k < poses.size(); ++k) {
+      if (poses[k - 1].time < end && poses[k].time > begin) angles += angle_between(poses[k - 1].pose, poses[k].pose);
+    }
+    return angles;
+  }
   double angles = spin.norm() * (end - begin);
   Keyframe last = keyframe_at(*this, begin);
   const auto turn_to = [&](const Keyframe& next) {
@@ -87,6 +113,7 @@ double Motion::rotation(double begin, double end) const {
 }
 
 RigidTransform Motion::pose(const RigidTransform& placed, double time) const {
+  if (!poses.empty()) return pose_at(poses, time);
   const Keyframe key = keyframe_at(*this, time);
   Matrix3 turn = rotation_from_degrees(key.rotation);
   const double rate = spin.norm();

@@ -16,6 +16,14 @@ struct Keyframe {
   Vector3 rotation = Vector3::Zero();  ///< [degrees], about the placed origin, after the placed rotation
 };
 
+/// A pose at a time, which a program gave.
+struct TimedPose {
+  double time = 0.0;  ///< [s]
+  RigidTransform pose = RigidTransform::Identity();
+
+  [[nodiscard]] bool operator==(const TimedPose& other) const { return time == other.time && pose.matrix() == other.pose.matrix(); }
+};
+
 enum class Interpolation : std::uint8_t { linear, smooth };
 
 /// Keyframes and a spin. The components of keyframes are interpolated linearly or smoothly, and constant outside their range. The
@@ -24,6 +32,9 @@ struct Motion {
   std::vector<Keyframe> keyframes{};                    ///< times strictly increasing
   Interpolation interpolation = Interpolation::linear;  ///< smooth: 3 s^2 - 2 s^3 between two keyframes
   Vector3 spin = Vector3::Zero();                       ///< angular velocity vector [degrees/s] about the placed origin
+  /// Instead of the placed pose and all else, if there are any; times strictly increasing. Between two of them the position moves
+  /// on a line and the rotation on the shortest arc (slerp: Shoemake 1985). At their times poses are exact.
+  std::vector<TimedPose> poses{};
 
   /// False if the pose is the same at all times.
   [[nodiscard]] bool moves() const;

@@ -87,7 +87,7 @@ bool is_asleep(const SpringNetwork& network, const Body& body) {
 SpringNetwork freest(SpringNetwork network) {
   Activity activity = network.activity;
   for (Index& pin : activity.pin_of) {
-    if (pin >= 0 && !network.pins[static_cast<std::size_t>(pin)].holds_always()) pin = kNone;
+    if (pin != kNone && !network.pins[static_cast<std::size_t>(pin)].holds_always()) pin = kNone;
   }
   set_activity(std::move(activity), network);
   return network;

@@ -14,13 +14,10 @@ struct SpringNetwork;
 
 enum class PinPhase : std::uint8_t { waiting, holding, over };
 
-/// Stands for a pin: a program fixed the particle where it was (Simulator::pin).
-inline constexpr Index kFixedInPlace = -2;
-
 /// What decides which particles forces move.
 struct Activity {
   std::vector<PinPhase> phases;  ///< of each pin
-  std::vector<Index> pin_of;     ///< by particle: the number of the pin that holds it, or kFixedInPlace; kNone: none
+  std::vector<Index> pin_of;     ///< by particle: the number of the pin that holds it; kNone: none
   std::vector<char> asleep{};    ///< by particle; empty: none sleeps
 
   [[nodiscard]] bool is_pinned(Index particle) const { return pin_of[particle] != kNone; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace sprung {
@@ -34,11 +35,10 @@ constexpr double kNoise = 0.08;
 
 }  // namespace
 
-RestDetector::RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit, double gravity)
-    : slow_(kFall * gravity), may_pull_(groups.groups.size(), 0.0) {
-  for (Index i = 0; i < network.particle_count(); ++i) {
-    may_pull_[groups.group_of[i]] += kOfWeight * gravity * network.masses[i];
-  }
+RestDetector::RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit,
+                           const Vector3& gravity)
+    : gravity_(gravity), masses_(groups.groups.size(), 0.0) {
+  for (Index i = 0; i < network.particle_count(); ++i) masses_[groups.group_of[i]] += network.masses[i];
   watch(network, groups);
   find_pulling(network, groups.group_of);
   if (limit != nullptr) find_limited(network, limit->settings());
@@ -47,7 +47,7 @@ RestDetector::RestDetector(const SpringNetwork& network, const SleepGroups& grou
 void RestDetector::watch(const SpringNetwork& network, const SleepGroups& groups) {
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     const Body& body = network.bodies[b];
-    double longest = kWindow * slow_;
+    double longest = std::numeric_limits<double>::infinity();
     for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
       const double length = network.springs.rest_length[s];
       if (length > 0.0) longest = std::min(longest, kOfSpring * length);
@@ -100,7 +100,8 @@ std::vector<char> RestDetector::restless(const SimulationState& state) const {
   }
   const std::vector<Vector3> pulls = changes_of_pull(state);
   for (const Pulling& spring : pulling_) {
-    if (pulls[spring.asleep_group].norm() > may_pull_[spring.asleep_group]) restless[spring.awake_group] = 1;
+    if (pulls[spring.asleep_group].norm() > kOfWeight * gravity_.norm() * masses_[spring.asleep_group])
+      restless[spring.awake_group] = 1;
   }
   return restless;
 }
@@ -144,10 +145,14 @@ void RestDetector::forget(SimulationState& state) {
   state.rest.histories.clear();
 }
 
-bool RestDetector::has_moved(const Watched& group, const SimulationState& state) {
-  return std::ranges::any_of(group.free, [&](Index i) {
-    return (state.x.col(i) - state.rest.x_beside_sleep.col(i)).squaredNorm() > group.longest * group.longest;
-  });
+double RestDetector::slow() const { return kFall * gravity_.norm(); }
+
+double RestDetector::longest(const Watched& group) const { return std::min(kWindow * slow(), group.longest); }
+
+bool RestDetector::has_moved(const Watched& group, const SimulationState& state) const {
+  const double longest = this->longest(group);
+  return std::ranges::any_of(
+      group.free, [&](Index i) { return (state.x.col(i) - state.rest.x_beside_sleep.col(i)).squaredNorm() > longest * longest; });
 }
 
 void RestDetector::judge_all(const std::vector<char>& restless, SimulationState& state) const {
@@ -172,8 +177,8 @@ void RestDetector::judge(const Watched& group, bool is_restless, const Simulatio
   };
   const double speed = root_mean_square([&](Index i) { return state.v.col(i); });
   const double displacement = root_mean_square([&](Index i) { return state.x.col(i) - state.rest.x_at_begin.col(i); });
-  const double largest = kQuiet * group.longest;
-  const bool is_quiet = !is_restless && speed <= slow_ && displacement <= largest;
+  const double largest = kQuiet * longest(group);
+  const bool is_quiet = !is_restless && speed <= slow() && displacement <= largest;
   const bool grows = displacement > kGrowth * std::max(rest.displacement, kNoise * largest);
   rest = {.displacement = displacement, .was_quiet = is_quiet, .is_at_rest = is_quiet && rest.was_quiet && !grows};
 }

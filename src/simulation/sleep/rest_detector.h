@@ -16,8 +16,8 @@ namespace sprung {
 
 class RestDetector {
  public:
-  /// `limit` is the stretch limit, if there is one; `gravity` in m/s^2.
-  RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit, double gravity);
+  /// `limit` is the stretch limit, if there is one. Keeps a reference to `gravity` [m/s^2].
+  RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit, const Vector3& gravity);
 
   /// Whether each group is restless. One of three is true:
   /// - A free particle has moved by more than 2.5 mm (on earth) or a tenth of the body's shortest spring. The displacement counts
@@ -45,7 +45,7 @@ class RestDetector {
   struct Watched {
     std::size_t body = 0;
     std::vector<Index> free;  ///< particles that are neither pinned nor asleep
-    double longest = 0.0;     ///< displacement at rest [m]
+    double longest = 0.0;     ///< displacement at rest by the length of springs [m]
   };
   /// A spring of the stretch limit with a free end.
   struct Limited {
@@ -65,16 +65,18 @@ class RestDetector {
   void find_pulling(const SpringNetwork& network, const std::vector<Index>& group_of);
   void find_limited(const SpringNetwork& network, const StretchLimitSettings& settings);
   [[nodiscard]] std::vector<Vector3> changes_of_pull(const SimulationState& state) const;
-  [[nodiscard]] static bool has_moved(const Watched& group, const SimulationState& state);
+  [[nodiscard]] double slow() const;                         ///< [m/s]
+  [[nodiscard]] double longest(const Watched& group) const;  ///< displacement at rest [m]
+  [[nodiscard]] bool has_moved(const Watched& group, const SimulationState& state) const;
   void judge_all(const std::vector<char>& restless, SimulationState& state) const;
   void judge(const Watched& group, bool is_restless, const SimulationState& state, MotionHistory& rest) const;
 
-  double slow_;                  ///< [m/s]
+  const Vector3& gravity_;
   std::vector<Watched> groups_;  ///< without free particles: groups that sleep or that pins hold as a whole
   std::vector<Watched> bodies_;
   std::vector<Limited> limited_;
   std::vector<Pulling> pulling_;
-  std::vector<double> may_pull_;  ///< largest change of the force on each group that does not wake it [N]
+  std::vector<double> masses_;  ///< of each group [kg]
 };
 
 }  // namespace sprung

@@ -24,10 +24,16 @@ double displacement(const RigidTransform& motion, const Box3& box) {
 }  // namespace
 
 Surroundings::Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step,
-                           double gravity)
+                           const Vector3& gravity)
     : network_(network), obstacles_(obstacles), groups_(groups), step_(step), gravity_(gravity), ends_(groups.groups.size(), 0.0) {
-  for (std::size_t p = 0; p < network.pins.size(); ++p) note(p);
-  for (const Attachment& attachment : network.attachments) note(attachment);
+  note_motions();
+}
+
+void Surroundings::note_motions() {
+  std::ranges::fill(ends_, 0.0);
+  attached_.clear();
+  for (std::size_t p = 0; p < network_.pins.size(); ++p) note(p);
+  for (const Attachment& attachment : network_.attachments) note(attachment);
   sort_unique(attached_);
 }
 
@@ -122,7 +128,7 @@ std::vector<char> Surroundings::driven(const Found& found, double time) const {
 Box3 Surroundings::box_in_step(const SleepGroup& group, const SimulationState& state) const {
   double farthest = 0.0;
   for (const Index i : group.reached) {
-    if (!network_.is_asleep(i)) farthest = std::max(farthest, step_ * (state.v.col(i).norm() + step_ * gravity_));
+    if (!network_.is_asleep(i)) farthest = std::max(farthest, step_ * (state.v.col(i).norm() + step_ * gravity_.norm()));
   }
   return grown(finite_bounds(state.x, group.reached), network_.bodies[group.body].material.thickness + farthest);
 }

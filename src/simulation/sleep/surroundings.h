@@ -13,8 +13,9 @@ class ObstacleFrame;
 
 class Surroundings {
  public:
-  /// Keeps references to the network, the obstacles and the groups. `step` in s, `gravity` in m/s^2.
-  Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step, double gravity);
+  /// Keeps references to all. `step` in s, `gravity` in m/s^2.
+  Surroundings(const SpringNetwork& network, const ObstacleSet& obstacles, const SleepGroups& groups, double step,
+               const Vector3& gravity);
 
   struct Found {
     std::vector<Box3> boxes;       ///< of each group, grown by its displacement in the next step, by speed and gravity
@@ -22,6 +23,9 @@ class Surroundings {
   };
   /// Groups are neighbours if they are adjacent, if an attachment joins them, or if their boxes overlap and they may collide.
   [[nodiscard]] Found find(const SimulationState& state) const;
+
+  /// Call it after the motion of a pin or an obstacle changed.
+  void note_motions();
 
   /// Whether something drives each group in the step after `time` [s]: a pin or an attachment that changes then or later, or an
   /// obstacle in reach that moves then or later. Deforming obstacles reach all boxes.
@@ -48,7 +52,7 @@ class Surroundings {
   const ObstacleSet& obstacles_;
   const SleepGroups& groups_;
   double step_;
-  double gravity_;
+  const Vector3& gravity_;
   std::vector<double> ends_;  ///< of the motions of each group
   std::vector<GroupPair> attached_;
 };

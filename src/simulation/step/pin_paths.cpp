@@ -36,7 +36,7 @@ const PinGrip* find(const std::vector<PinGrip>& anchors, Index particle) {
 RigidTransform PinPaths::Path::origin() const { return RigidTransform(Eigen::Translation3d(pin->origin)); }
 
 RigidTransform PinPaths::Path::pose(double time) const {
-  return obstacle != nullptr ? obstacle->motion.pose(obstacle->rest_pose, time) : pin->motion.pose(origin(), time);
+  return motion().pose(obstacle != nullptr ? obstacle->rest_pose : origin(), time);
 }
 
 /// Where a path has its particles at one time.
@@ -63,14 +63,18 @@ class PinPaths::Placing {
 };
 
 PinPaths::PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length)
-    : network_(network), step_length_(step_length) {
+    : network_(network), obstacles_(obstacles), step_length_(step_length) {
   check_obstacles(network, obstacles.size());
-  for (std::size_t p = 0; p < network.pins.size(); ++p) {
-    const Pin& pin = network.pins[p];
-    if (!pin.moves() || network.activity.phases[p] != PinPhase::holding) continue;
-    Path path{.pin = &pin, .held = held_particles(network, p)};
+}
+
+void PinPaths::find_paths() {
+  paths_.clear();
+  for (std::size_t p = 0; p < network_.pins.size(); ++p) {
+    const Pin& pin = network_.pins[p];
+    if (!pin.moves() || network_.activity.phases[p] != PinPhase::holding) continue;
+    Path path{.pin = &pin, .held = held_particles(network_, p)};
     if (pin.obstacle != kNone) {
-      path.obstacle = &obstacles[static_cast<std::size_t>(pin.obstacle)];
+      path.obstacle = &obstacles_[static_cast<std::size_t>(pin.obstacle)];
       path.sequence = sequence_of(*path.obstacle);
     }
     paths_.push_back(std::move(path));
@@ -78,6 +82,7 @@ PinPaths::PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& ob
 }
 
 bool PinPaths::register_pins(SimulationState& state) {
+  find_paths();
   std::vector<PinGrip> all;
   bool is_new = false;
   for (Path& path : paths_) {
@@ -105,13 +110,14 @@ bool PinPaths::register_pins(SimulationState& state) {
 /// Those of the state that this pin made, and new ones for its other particles.
 std::vector<PinGrip> PinPaths::anchors_of(const Path& path, const SimulationState& state, bool& is_new) const {
   const double from = path.pin->from;
-  const bool later = from > 0.0;
+  const std::vector<TimedPose>& steered = path.motion().poses;
+  const bool later = from > 0.0 || !steered.empty();
   std::vector<PinGrip> anchors;
   std::vector<std::size_t> added;
   std::vector<Vector3> points;  // of those, in the obstacle's frame
   for (const Index i : path.held) {
     const PinGrip* known = find(state.grips, i);
-    if (known != nullptr && known->from == from) {
+    if (known != nullptr && known->from == from && (steered.empty() || known->time >= steered.front().time)) {
       anchors.push_back(*known);
       continue;
     }

@@ -21,7 +21,8 @@ class PinPaths {
   /// not exist. `step_length` [s] is that of the simulation.
   PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length);
 
-  /// Records where pins that have begun took their particles, and drops the anchors of other pins. Returns whether anything is new.
+  /// Records where pins that have begun, or that a program moves for the first time, have their particles, and drops the anchors of
+  /// other pins. Call it after pins or their motions changed. Returns whether anything is new.
   bool register_pins(SimulationState& state);
 
   /// Moves the particles to where they are at a time [s], and gives them the mean velocity of the following `dt` [s], which the
@@ -45,15 +46,18 @@ class PinPaths {
     const MeshSequence* sequence = nullptr;  ///< of the obstacle, if it deforms
     std::vector<Held> particles{};
 
-    [[nodiscard]] bool needs_anchors() const { return pin->from > 0.0 || sequence != nullptr; }
+    [[nodiscard]] const Motion& motion() const { return obstacle != nullptr ? obstacle->motion : pin->motion; }
+    [[nodiscard]] bool needs_anchors() const { return pin->from > 0.0 || sequence != nullptr || !motion().poses.empty(); }
     [[nodiscard]] RigidTransform origin() const;
     [[nodiscard]] RigidTransform pose(double time) const;
   };
   class Placing;
 
+  void find_paths();
   std::vector<PinGrip> anchors_of(const Path& path, const SimulationState& state, bool& is_new) const;
 
   const SpringNetwork& network_;
+  const std::vector<Obstacle>& obstacles_;
   double step_length_;
   std::vector<Path> paths_;
 };

@@ -9,6 +9,7 @@
 #include "simulation/step/frame_steps.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -58,6 +59,8 @@ StepAdvice advise_step(const SimulatorSettings& settings, const SpectralBounds& 
   StepAdvice advice = advise_at_most(settings, largest_symplectic);
   return {"\"symplectic_euler\" with " + advice.text + (advice.step ? " or \"auto\"" : "")};
 }
+
+std::atomic<std::int64_t> counted_bounds = 0;
 
 constexpr double kStableFraction = 0.9;
 
@@ -132,8 +135,11 @@ SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& 
 
 }  // namespace
 
+std::int64_t bounds_count() { return counted_bounds; }
+
 SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,
                                  const std::vector<std::shared_ptr<Force>>& external) {
+  ++counted_bounds;
   const bool change = !std::ranges::all_of(network.pins, &Pin::holds_always);
   return bounds_of(change ? freest(network) : network, settings, has_obstacles, external);
 }
@@ -144,7 +150,7 @@ bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settin
 
 double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings) {
   double drag = 0.0;
-  for (Index i = 0; i < network.particle_count(); ++i) {
+  for (Index i = 0; settings.air_drag > 0.0 && i < network.particle_count(); ++i) {
     drag = std::max(drag, settings.air_drag * network.drag_areas[i] * network.inverse_masses[i]);
   }
   const double of_surfaces = acts_on_faces(network, settings) ? surface_air(network, settings).largest_acceleration() : 0.0;

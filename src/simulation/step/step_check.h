@@ -6,6 +6,7 @@
 #include "dynamics/integrators/stable_step.h"
 #include "simulation/settings/simulator_settings.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct SpringNetwork;
 /// that are active together.
 [[nodiscard]] SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles,
                                                const std::vector<std::shared_ptr<Force>>& external = {});
+
+/// The number of calls of simulation_bounds in this process.
+[[nodiscard]] std::int64_t bounds_count();
 
 /// Whether the air acts on faces.
 [[nodiscard]] bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settings);

@@ -30,6 +30,9 @@ class StepConstraints {
     contacts_.roll_back(permitted);
     if (limit_) limit_->forget_solves();
   }
+  /// See the constructor.
+  void set_steady_acceleration(double acceleration) { steady_acceleration_ = acceleration; }
+
   /// Makes the substeps that follow as planned.
   void follow(const StepPlan& plan) {
     contacts_.look_ahead(plan.look_ahead);

@@ -36,7 +36,8 @@ class Rest : public ::testing::Test {
 
   SpringNetwork network_ = cloth(20, 0.0);
   SleepGroups groups_{network_};
-  RestDetector detector_{network_, groups_, nullptr, kGravity};
+  const Vector3 gravity_ = kGravity * Vector3::UnitY();
+  RestDetector detector_{network_, groups_, nullptr, gravity_};
   SimulationState state_ = initial_state(network_);
   const std::vector<char> none_ = std::vector<char>(groups_.groups.size(), 0);
   std::vector<char> restless_ = none_;
@@ -123,7 +124,7 @@ TEST_F(Rest, EndsBesideASleeperWhoseSpringsPullMore) {
   std::vector<char> asleep(static_cast<std::size_t>(network_.particle_count()), 0);
   for (const Index i : groups_.groups[0].particles) asleep[i] = 1;
   set_asleep(asleep, network_);
-  const RestDetector detector(network_, groups_, nullptr, kGravity);
+  const RestDetector detector(network_, groups_, nullptr, gravity_);
   detector.end_window(0.0, none_, none_, state_);
   const auto pull = [&](double distance) {  // all other particles away from the middle of the group
     Vector3 middle = Vector3::Zero();
@@ -150,7 +151,8 @@ TEST(Surroundings, FacesBetweenGroupsReachTheirNeighbours) {
   SpringNetwork network = builder.build();
   const SleepGroups groups(network);
   const ObstacleSet obstacles;
-  const Surroundings surroundings(network, obstacles, groups, 1.0e-3, kGravity);
+  const Vector3 gravity = kGravity * Vector3::UnitY();
+  const Surroundings surroundings(network, obstacles, groups, 1.0e-3, gravity);
   SimulationState state = initial_state(network);
   int faces = 0;
   for (const auto& triangle : network.bodies.front().surface.triangles.colwise()) {

@@ -1,0 +1,150 @@
+// The model that simulators share, and copies of simulators.
+#include "simulation/model.h"
+
+#include "base/error.h"
+#include "simulation/scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+using testing::cloth;
+using testing::ground;
+using testing::kGravity;
+using testing::run;
+
+/// A cloth that hangs by two corners and tears, beside a rope that comes to rest on the ground.
+SpringNetwork torn_and_resting() {
+  SpringMaterial material{.value = 100.0, .damping = 0.1, .break_strain = 0.15};
+  BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {9, 9}}, {.structural = material, .shear = material});
+  set_total_mass(shape, 4.0);
+  RigidTransform above = RigidTransform::Identity();
+  above.translation() = Vector3(0.0, 4.0, 0.0);
+  place(shape, above, Vector3::Zero());
+  BodyShape rope = make_rope({.points = {{3.0, 0.005, 0.0}, {4.0, 0.005, 0.0}}, .particles = 8, .length = {}},
+                             {.structural = SpringMaterial{.value = 100.0, .damping = 0.1}});
+  set_total_mass(rope, 0.1);
+  NetworkBuilder builder;
+  const Index first = builder.add_body("cloth", shape);
+  builder.pin({first + 72, first + 80});
+  builder.add_body("rope", rope, {.thickness = 0.005, .friction = 0.5, .static_friction = 0.5});
+  return builder.build();
+}
+
+TEST(Model, IsBuiltOnceForARunThatTearsWakesPinsAndChangesGravity) {
+  const BuildCounts before = Model::build_counts();
+  Simulator simulator(torn_and_resting(), {.step = 1e-3}, {ground({.thickness = 0.005, .friction = 0.5, .static_friction = 0.5})});
+  while (!testing::sleeps(simulator, 1) && simulator.time() < 5.0) simulator.step();
+  ASSERT_TRUE(testing::sleeps(simulator, 1));
+  EXPECT_GT(simulator.state().springs.broken_count(), 0);
+  simulator.wake();
+  EXPECT_FALSE(testing::sleeps(simulator, 1));
+  simulator.pin(85);
+  simulator.set_gravity(Vector3(1.0, -5.0, 0.0));
+  run(simulator, 0.1);
+  simulator.release(85);
+  simulator.step();
+  const BuildCounts after = Model::build_counts();
+  EXPECT_EQ(after.models - before.models, 1);
+  EXPECT_EQ(after.bounds - before.bounds, 1);
+}
+
+TEST(Model, ManySimulatorsShareOneInAnyThread) {
+  const std::shared_ptr<const Model> model = Model::build(cloth(12, 0.3), {.step = 1e-3}, {ground()});
+  std::array<Points, 4> ends;
+  std::vector<std::thread> threads;
+  for (Points& end : ends) {
+    threads.emplace_back([&] {
+      Simulator simulator(model);
+      run(simulator, 0.4);
+      end = simulator.positions();
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const Points& end : ends) EXPECT_EQ(end, ends[0]);
+  Simulator alone(cloth(12, 0.3), {.step = 1e-3}, {ground()});
+  run(alone, 0.4);
+  EXPECT_EQ(alone.positions(), ends[0]);
+}
+
+TEST(Model, DoesNotChangeWithItsSimulators) {
+  Simulator simulator(torn_and_resting(), {.step = 1e-3}, {ground()});
+  const std::shared_ptr<const Model> model = simulator.model();
+  const SimulationState start = model->initial_state();
+  const Index springs = model->network().springs.count();
+  run(simulator, 1.0);
+  EXPECT_LT(simulator.network().springs.count(), springs);
+  EXPECT_EQ(model->network().springs.count(), springs);
+  EXPECT_EQ(model->initial_state(), start);
+  Simulator again(model);
+  EXPECT_EQ(again.state(), start);
+}
+
+TEST(Copy, GoesOnAsItsOriginalAndApartFromIt) {
+  Simulator original(torn_and_resting(), {.step = 1e-3}, {ground()});
+  run(original, 0.3);
+  Simulator copy = original;
+  EXPECT_EQ(copy.model(), original.model());
+  EXPECT_EQ(copy.state(), original.state());
+  copy.set_gravity(Vector3::Zero());
+  run(copy, 0.05);
+  EXPECT_EQ(original.settings().gravity, Vector3(0.0, -kGravity, 0.0));
+  const Points before = original.positions();
+  copy = original;
+  EXPECT_EQ(copy.positions(), before);
+  EXPECT_EQ(copy.settings().gravity, original.settings().gravity);
+}
+
+TEST(Restore, BringsAFormerStateBack) {
+  Simulator simulator(torn_and_resting(), {.step = 1e-3}, {ground()});
+  run(simulator, 0.1);
+  const SimulationState former = simulator.state();
+  const double* const address = simulator.positions().data();
+  run(simulator, 1.5);
+  const SimulationState later = simulator.state();
+  EXPECT_NE(later.springs.broken_count(), former.springs.broken_count());
+  simulator.restore(former);
+  EXPECT_EQ(simulator.state(), former);
+  EXPECT_EQ(simulator.positions().data(), address) << "views of the positions last";
+  EXPECT_EQ(simulator.network().springs.count(), simulator.model()->network().springs.count() - former.springs.broken_count());
+}
+
+TEST(State, AnyNumberThatDiffersMakesStatesDiffer) {
+  Simulator simulator(torn_and_resting(), {.step = 1e-3, .record_forces = true}, {ground()});
+  run(simulator, 0.5);
+  const SimulationState state = simulator.state();
+  EXPECT_EQ(hash(state), hash(SimulationState(state)));
+  const auto differs = [&](const auto& change) {
+    SimulationState other = state;
+    change(other);
+    return !(other == state) && hash(other) != hash(state);
+  };
+  EXPECT_TRUE(differs([](SimulationState& s) { s.x(0, 0) = std::nextafter(s.x(0, 0), 1.0); }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.v(2, 3) += 1.0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.x_previous(1, 1) += 1.0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { ++s.step_in_frame; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.activity.pin_of[4] = 0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.activity.phases[0] = PinPhase::over; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.springs.broken[0] ^= 1; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.contact.pushed.push_back(1); }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.contact.slip.displacement(0, 0) = 1.0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.rest.sleepers[0] ^= 1; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.energy.stored += 1.0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.planner.retry_wait = 3; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.limit.handovers[1].missed_steps = 2; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.impulses.on_pinned(0, 0) += 1.0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.reactions.since += 1.0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.steering.obstacles.push_back({0, {{0.0, RigidTransform::Identity()}}}); }));
+  EXPECT_FALSE(differs([](SimulationState&) {}));
+}
+
+}  // namespace
+}  // namespace sprung
