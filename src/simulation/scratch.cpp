@@ -37,8 +37,16 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
     const double most = most_damping_rate(settings.step);
     integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
   }
+  touched_groups.assign(groups.groups.size(), 0);
+  for (const auto& force : control.forces) note_touched(force->touched());
+  for (const auto& constraint : control.constraints) note_touched(constraint->touched());
   add_forces(network, settings, obstacles, control);
   add_constraints(network, control);
+}
+
+void Workspace::note_touched(const std::optional<std::vector<Index>>& particles) {
+  touches_any = touches_any || !particles;
+  for (const Index i : particles.value_or(std::vector<Index>())) touched_groups[groups.group_of[i]] = 1;
 }
 
 /// Those that network_forces() does not make.

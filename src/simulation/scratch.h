@@ -42,8 +42,11 @@ struct Workspace {
   SleepGroups groups;
   RestDetector rest;
   Surroundings surroundings;
+  std::vector<char> touched_groups;  ///< whether an added force or constraint touches each sleep group
+  bool touches_any = false;          ///< whether an added force or constraint may touch any particle
 
  private:
+  void note_touched(const std::optional<std::vector<Index>>& particles);
   void add_forces(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles,
                   const Control& control);
   void add_constraints(const SpringNetwork& network, const Control& control);

@@ -221,6 +221,8 @@ void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) 
 void Simulator::Implementation::change_control(Control next) {
   const BeforeTransition before = stepper().before_transition();
   SimulationState continued = state;
+  continued.added_forces = next.forces.size();
+  continued.added_constraints = next.constraints.size();
   auto its_scratch = std::make_unique<Scratch>(*model, next, continued);
   Stepper(*model, next, continued, *its_scratch).inherit(before, *model);
   control = std::move(next);
@@ -245,7 +247,11 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 void Simulator::restore(const SimulationState& state) {
   const Workspace& work = *implementation_->scratch->work;
-  check_state({.model = *model(), .sleep_groups = work.groups.count(), .can_collide = work.constraints.contacts().can_collide()},
+  const Control& control = implementation_->control;
+  check_state({.model = *model(),
+               .control = control,
+               .sleep_groups = work.groups.count(),
+               .can_collide = work.constraints.contacts().can_collide()},
               state);
   implementation_->stepper().restore(state);
   if (settings().record_forces == state.impulses.on()) return;

@@ -57,10 +57,10 @@ class Simulator {
   StepReport step();
 
   /// Continues from a state of this simulator, of a copy of it, or of another simulator of the same network, settings and
-  /// obstacles. Forces, constraints and stop_when() that were added are not part of the state. Results may differ from those of the
-  /// simulator that had the state, which has caches of former steps: in last digits, or, where fast bodies collide, in which
-  /// contacts are found. Costs about as much as a few steps. Throws InputError if the state does not fit the network, the settings
-  /// or the obstacles; the simulation then continues as before.
+  /// obstacles. Forces and constraints that were added are not part of the state, but it demands as many, in the same order.
+  /// Results may differ from those of the simulator that had the state, which has caches of former steps: in last digits, or, where
+  /// fast bodies collide, in which contacts are found. Costs about as much as a few steps. Throws InputError if the state does not
+  /// fit the network, the settings or the obstacles; the simulation then continues as before.
   void restore(const SimulationState& state);
 
   /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the simulator then is as it was before
@@ -120,7 +120,8 @@ class Simulator {
 
   /// Adds an external force. The caller may change its parameters between steps. The force must not keep references to network().
   /// The largest stable step accounts for the elements that the force appends: it is found anew if there are any. Throws InputError
-  /// if the step is beyond it. The energy is not checked while there are external forces, as they may supply any amount.
+  /// if the step is beyond it. The energy is not checked while there are external forces, as they may supply any amount. Only the
+  /// particles that the force touches (Force::touched) stay awake.
   void add_force(std::shared_ptr<Force> force);
 
   /// Adds a constraint, which the passes of each step restore. The caller may change its parameters between steps. The constraint

@@ -26,9 +26,10 @@ std::vector<char> Stepper::particles_to_sleep() const {
   return asleep;
 }
 
-/// External forces may change at any time, and so may wind. Bodies sink into a penalty for long, and are not at rest while they do.
+/// A force that may touch any particle may change at any time, and so may wind. Bodies sink into a penalty for long, and are not at
+/// rest while they do.
 bool Stepper::may_sleep() const {
-  return settings().sleep && work().penalty == nullptr && constraints().contacts().can_collide() && !control_.adds_any() &&
+  return settings().sleep && work().penalty == nullptr && constraints().contacts().can_collide() && !work().touches_any &&
          state_.planner.feasible_steps > 0 && (!settings().has_air() || time() >= settings().wind.end());
 }
 
@@ -44,7 +45,8 @@ void Stepper::choose_sleepers() {
   const std::vector<char> asleep = sleeping_groups();
   std::vector<char> restless = work().rest.restless(state_);
   const std::vector<char> driven = work().surroundings.driven(found, time());
-  for (std::size_t p = 0; p < restless.size(); ++p) restless[p] = restless[p] != 0 || driven[p] != 0 ? 1 : 0;
+  for (std::size_t p = 0; p < restless.size(); ++p)
+    restless[p] = restless[p] != 0 || driven[p] != 0 || work().touched_groups[p] != 0 ? 1 : 0;
   const std::vector<char> disturbed = with_neighbours(restless, found.pairs);
   for (std::size_t p = 0; p < state_.rest.sleepers.size(); ++p)
     state_.rest.sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;

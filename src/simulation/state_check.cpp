@@ -32,6 +32,7 @@ class StateRules {
     check_grips();
     check_links();
     check_impulses();
+    check_added();
     problems_.throw_if_any();
   }
 
@@ -163,6 +164,17 @@ class StateRules {
       require_size(std::string(key) + ".of_springs", static_cast<std::size_t>(impulses->of_springs.size()), springs,
                    "springs that are left");
     }
+  }
+
+  void check_added() {
+    const auto require_same = [&](const std::string& key, std::size_t in_state, std::size_t in_simulator) {
+      if (in_state == in_simulator) return;
+      problems_.add("state." + key, std::to_string(in_state),
+                    "must be " + std::to_string(in_simulator) + ", the number that this simulator has",
+                    "add the same forces and constraints in the same order, then restore");
+    };
+    require_same("added_forces", state_.added_forces, owner_.control.forces.size());
+    require_same("added_constraints", state_.added_constraints, owner_.control.constraints.size());
   }
 
   [[nodiscard]] const SpringNetwork& network() const { return owner_.model.network(); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/state/simulation_state.h"
+#include "simulation/control.h"
 #include "simulation/model.h"
 
 namespace sprung {
@@ -9,6 +10,7 @@ namespace sprung {
 /// What the state must fit.
 struct StateOwner {
   const Model& model;
+  const Control& control;
   Index sleep_groups = 0;    ///< their number
   bool can_collide = false;  ///< whether there is anything that the network may touch
 };

@@ -74,8 +74,9 @@ std::optional<StepReport> Stepper::attempt(PlanReason reason) {
     if (obstacles().moves()) choose_sleepers();
     return StepReport{};
   }
-  if (std::exchange(scratch_.conditions_changed, false)) integrator().resume(state_, work().forces, dt());
-  if (std::exchange(state_.energy.is_stale, false)) note_change();
+  if (std::exchange(scratch_.conditions_changed, false) && are_constant(work().forces)) {
+    integrator().resume(state_, work().forces, dt());  // it keeps their sum
+  }
   scratch_.begin = state_;
   has_begun_ = true;
   const bool any_sleeps = !network().activity.asleep.empty();
@@ -287,6 +288,7 @@ void Stepper::check_state() {
   if (state_.step > 1 && state_.step % (kStepsPerEnergy * check_interval) != 0) return;
   if (control_.adds_any()) return;
   const Energies now = energies();
+  if (std::exchange(state_.energy.is_stale, false)) EnergyWatch::note_change(now, state_.energy);
   EnergyWatch::note(state_.step, now, state_.energy);
   check_energy(now);
 }

@@ -2,6 +2,7 @@
 #include "simulation/model.h"
 
 #include "base/error.h"
+#include "dynamics/forces/pull_force.h"
 #include "simulation/scenes.h"
 
 #include <gmock/gmock.h>
@@ -115,6 +116,38 @@ TEST(Restore, BringsAFormerStateBack) {
   EXPECT_EQ(simulator.state(), former);
   EXPECT_EQ(simulator.positions().data(), address) << "views of the positions last";
   EXPECT_EQ(simulator.network().springs.count(), simulator.model()->network().springs.count() - former.springs.broken_count());
+}
+
+TEST(Restore, DemandsTheForcesThatTheStateKnows) {
+  Simulator simulator(cloth(5, 1.0), {.step = 1e-3});
+  const SimulationState without = simulator.state();
+  simulator.add_force(std::make_shared<PullForce>(simulator.network(), simulator.positions(), 0, 1e-3));
+  try {
+    simulator.restore(without);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("state.added_forces = 0: must be 1"));
+  }
+  simulator.step();
+  EXPECT_NO_THROW(simulator.restore(simulator.state()));
+}
+
+TEST(AddedForce, KeepsOnlyWhatItTouchesAwake) {
+  const ContactMaterial rough{.thickness = 0.005, .friction = 0.5, .static_friction = 0.5};
+  const auto rope = [](double x) {
+    BodyShape shape = make_rope({.points = {{x, 0.005, 0.0}, {x + 1.0, 0.005, 0.0}}, .particles = 8, .length = {}},
+                                {.structural = SpringMaterial{.value = 100.0, .damping = 0.1}});
+    set_total_mass(shape, 0.1);
+    return shape;
+  };
+  NetworkBuilder builder;
+  builder.add_body("pulled", rope(0.0), rough);
+  builder.add_body("left", rope(3.0), rough);
+  Simulator simulator(builder.build(), {.step = 1e-3}, {ground(rough)});
+  simulator.add_force(std::make_shared<PullForce>(simulator.network(), simulator.positions(), 0, 1e-3));
+  run(simulator, 2.0);
+  EXPECT_FALSE(testing::sleeps(simulator, 0));
+  EXPECT_TRUE(testing::sleeps(simulator, 1));
 }
 
 TEST(State, AnyNumberThatDiffersMakesStatesDiffer) {

@@ -6,6 +6,8 @@ namespace sprung {
 
 void Constraint::prepare(double /*time*/) {}
 
+std::optional<std::vector<Index>> Constraint::touched() const { return std::nullopt; }
+
 double project(const Constraints& constraints, const Points& before, Points& positions) {
   double largest = 0.0;
   for (const auto& constraint : constraints) largest = std::max(largest, constraint->project(before, positions));

@@ -5,6 +5,7 @@
 #include "dynamics/state/recorded_impulses.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace sprung {
@@ -20,6 +21,9 @@ class Constraint {
 
   /// Prepares the constraint for passes of a step that ends at `time` [s]. Not thread-safe. Default: does nothing.
   virtual void prepare(double time);
+
+  /// The particles that the constraint moves, now or later; none: any. Those of an added constraint stay awake. Default: any.
+  [[nodiscard]] virtual std::optional<std::vector<Index>> touched() const;
 
   /// One Gauss-Seidel pass over `positions` [m], 3 x n, of a step that began at `before`. Each particle moves in proportion to its
   /// inverse mass, so that momentum is conserved; pinned particles do not move. Gives the same bits for any number of threads.

@@ -36,6 +36,12 @@ PullForce::PullForce(const SpringNetwork& network, const Points& positions, Inde
   }
 }
 
+std::optional<std::vector<Index>> PullForce::touched() const {
+  std::vector<Index> particles;
+  for (const Grip& grip : grips_) particles.push_back(grip.particle);
+  return particles;
+}
+
 void PullForce::add(const Kinematics& at, Points& forces) const {
   for (const Grip& grip : grips_) {
     const Vector3 displacement = at.x.col(grip.particle) - target_ - grip.offset;

@@ -27,6 +27,7 @@ class PullForce final : public Force {
   void set_target(const Vector3& target) { target_ = target; }
   [[nodiscard]] const Vector3& target() const { return target_; }
 
+  [[nodiscard]] std::optional<std::vector<Index>> touched() const override;
   void add(const Kinematics& at, Points& forces) const override;
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
 

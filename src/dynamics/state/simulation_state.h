@@ -154,6 +154,8 @@ struct SimulationState {
   RecordedImpulses impulses{};       ///< empty unless the settings ask for forces
   RecordedImpulses last_impulses{};  ///< of the last step; a step adds those of sleeping particles again
   ReactionMemory reactions{};
+  std::size_t added_forces = 0;       ///< number of forces that a program added
+  std::size_t added_constraints = 0;  ///< likewise
 
   /// Bit by bit.
   [[nodiscard]] bool operator==(const SimulationState& other) const;

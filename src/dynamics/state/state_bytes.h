@@ -23,7 +23,7 @@ class StateBytes {
   void pass(const SimulationState& s) {
     all(s.step, s.frame, s.step_in_frame, s.steps_per_frame, s.substeps, s.substep, s.planner, s.x, s.v, s.x_previous, s.activity,
         s.springs, s.steering, s.contact, s.rest, s.energy, s.limit.handovers, s.grips, s.links, s.impulses, s.last_impulses,
-        s.reactions.impulses, s.reactions.since);
+        s.reactions.impulses, s.reactions.since, s.added_forces, s.added_constraints);
   }
 
  private:
