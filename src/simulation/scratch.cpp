@@ -1,13 +1,8 @@
 #include "simulation/scratch.h"
 
-#include "dynamics/constraints/carried_surface.h"
-#include "dynamics/constraints/cell_volume.h"
-#include "dynamics/constraints/enclosed_volume.h"
-#include "dynamics/forces/material_dampers.h"
 #include "dynamics/forces/shared_force.h"
-#include "dynamics/forces/surface_air_force.h"
 #include "network/model/spring_failure.h"
-#include "simulation/model/network_forces.h"
+#include "simulation/model/force_factory.h"
 #include "simulation/step/step_check.h"
 
 #include <algorithm>
@@ -35,7 +30,7 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
   if (settings.perturb) symmetry.emplace(network, settings.seed);
   if (splits_dampers(settings, bounds)) {
     const double most = most_damping_rate(settings.step);
-    integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
+    integrator->set_dampers(dampers_of_materials(network, most), std::min(most, bounds.material_damping));
   }
   touched_groups.assign(groups.groups.size(), 0);
   for (const auto& force : control.forces) note_touched(force->touched());
@@ -52,29 +47,17 @@ void Workspace::note_touched(const std::optional<std::vector<Index>>& particles)
 /// Those that network_forces() does not make.
 void Workspace::add_forces(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles,
                            const Control& control) {
-  if (acts_on_faces(network, settings)) {
-    const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
-    forces.push_back(std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(),
-                                                       implicit ? 0.0 : settings.step));
-  }
-  if (settings.contact.response == ContactSettings::Response::penalty && !obstacles.empty()) {
-    auto force =
-        std::make_unique<PenaltyContact>(network, obstacles, settings.contact.stiffness, settings.contact.damping, settings.step);
-    penalty = force.get();
-    forces.push_back(std::move(force));
+  if (auto air = face_air(network, settings)) forces.push_back(std::move(air));
+  if (auto contact = penalty_contact(network, settings, obstacles)) {
+    penalty = contact.get();
+    forces.push_back(std::move(contact));
   }
   if (attachments) forces.push_back(std::make_unique<SharedForce>(attachments->springs()));
   for (const std::shared_ptr<Force>& force : control.forces) forces.push_back(std::make_unique<SharedForce>(force));
 }
 
 void Workspace::add_constraints(const SpringNetwork& network, const Control& control) {
-  if (std::ranges::any_of(network.bodies, [](const Body& body) { return !body.carried.empty(); })) {
-    constraints.add(std::make_unique<CarriedSurface>(network));
-  }
-  if (std::ranges::any_of(network.bodies, &Body::preserve_volume)) constraints.add(std::make_unique<CellVolume>(network));
-  if (std::ranges::any_of(network.bodies, [](const Body& body) { return body.volume_factor != 0.0; })) {
-    constraints.add(std::make_unique<EnclosedVolume>(network));
-  }
+  for (const std::shared_ptr<Constraint>& constraint : network_constraints(network)) constraints.add(constraint);
   if (attachments && std::ranges::any_of(network.attachments, &Attachment::is_rigid)) constraints.add_rods(attachments->rods());
   for (const std::shared_ptr<Constraint>& constraint : control.constraints) constraints.add(constraint);
 }

@@ -3,7 +3,7 @@
 
 #include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/attachments/attachments.h"
-#include "dynamics/contact/penalty_contact.h"
+#include "dynamics/contact/contact_force.h"
 #include "dynamics/integrators/integrator.h"
 #include "simulation/control.h"
 #include "simulation/model.h"
@@ -30,7 +30,7 @@ struct Workspace {
             const ObstacleSet& obstacles, const Control& control);
 
   Forces forces;
-  PenaltyContact* penalty = nullptr;       ///< null unless contact is by penalty
+  ContactForce* penalty = nullptr;         ///< null unless contact is by penalty
   std::optional<Attachments> attachments;  ///< none without attachments in the network
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;

@@ -2,15 +2,14 @@
 #pragma once
 
 #include "collision/obstacles/obstacle_frame.h"
-#include "dynamics/forces/force.h"
-#include "dynamics/state/simulation_state.h"
+#include "dynamics/contact/contact_force.h"
 #include "network/model/spring_network.h"
 
 namespace sprung {
 
 /// A particle at depth p below its gap feels k p - c v_n along the surface's normal, never a pull. Coulomb friction is at most
 /// friction times that force, and at most what stops the particle within a step.
-class PenaltyContact final : public Force {
+class PenaltyContact final : public ContactForce {
  public:
   /// `stiffness` k [N/m] > 0, `damping` c [N s/m] >= 0, `dt` [s] is the step. Keeps references to the network and the obstacles,
   /// which are at time 0 until prepare().
@@ -35,10 +34,10 @@ class PenaltyContact final : public Force {
   [[nodiscard]] EnergyKind energy_kind() const override { return EnergyKind::contact; }
 
   /// Particles nearer to an obstacle than their gap at that time, ascending.
-  [[nodiscard]] std::vector<Index> touching(const Points& positions) const;
+  [[nodiscard]] std::vector<Index> touching(const Points& positions) const override;
 
   /// The normals of obstacles at these particles, at that time.
-  [[nodiscard]] std::vector<ContactNormal> normals(const Points& positions) const;
+  [[nodiscard]] std::vector<ContactNormal> normals(const Points& positions) const override;
 
  private:
   struct Touch;

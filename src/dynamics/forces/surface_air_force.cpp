@@ -53,10 +53,6 @@ double total_area(const SpringNetwork& network, const Body& body) {
 
 }  // namespace
 
-bool has_triangles(const SpringNetwork& network) {
-  return std::ranges::any_of(network.bodies, [](const Body& body) { return body.surface.triangles.cols() > 0; });
-}
-
 /// The air on a face: F = A (across u_n + along u_t).
 struct SurfaceAirForce::Flow {
   double area = 0.0;                 ///< [m^2]

@@ -70,7 +70,4 @@ class SurfaceAirForce final : public Force {
   std::vector<Index> faces_at_;     ///< the faces of each particle, ascending
 };
 
-/// Whether a body of the network has triangles.
-[[nodiscard]] bool has_triangles(const SpringNetwork& network);
-
 }  // namespace sprung

@@ -22,6 +22,10 @@ Points contact_positions(const SpringNetwork& network, const Points& positions) 
   return vertices;
 }
 
+bool has_triangles(const SpringNetwork& network) {
+  return std::ranges::any_of(network.bodies, [](const Body& body) { return body.surface.triangles.cols() > 0; });
+}
+
 bool bodies_may_collide(const SpringNetwork& network) {
   const auto collides_with_itself = [](const Body& body) { return body.contact.self; };
   const auto collides_with_others = [](const Body& body) { return body.contact.others; };

@@ -42,6 +42,9 @@ struct SpringNetwork {
 /// The columns of the particles that are vertices of surfaces for contact, without the cells that carry some of them, 3 x m.
 [[nodiscard]] Points contact_positions(const SpringNetwork& network, const Points& positions);
 
+/// Whether a body of the network has triangles.
+[[nodiscard]] bool has_triangles(const SpringNetwork& network);
+
 /// Whether a body may collide with itself or with another body.
 [[nodiscard]] bool bodies_may_collide(const SpringNetwork& network);
 

@@ -3,7 +3,6 @@
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/contact/contact_materials.h"
-#include "dynamics/forces/surface_air_force.h"
 
 #include <algorithm>
 #include <cmath>

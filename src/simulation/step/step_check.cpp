@@ -2,10 +2,8 @@
 
 #include "base/format.h"
 #include "dynamics/attachments/attachment_springs.h"
-#include "dynamics/contact/penalty_contact.h"
-#include "dynamics/forces/surface_air_force.h"
 #include "network/model/activity.h"
-#include "simulation/model/network_forces.h"
+#include "simulation/model/force_factory.h"
 #include "simulation/step/frame_steps.h"
 
 #include <algorithm>
@@ -75,11 +73,6 @@ double advised_for_springs(const IntegratorSettings& settings, SpectralBounds bo
   return advised_for(settings, bounds);
 }
 
-/// With steps of any length.
-SurfaceAirForce surface_air(const SpringNetwork& network, const SimulatorSettings& settings) {
-  return {network, settings.air_surface, settings.wind, settings.gravity.norm(), 0.0};
-}
-
 /// The elements of all forces, and the force that alone would permit the smallest step.
 class StepElements {
  public:
@@ -118,13 +111,9 @@ SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& 
                          const std::vector<std::shared_ptr<Force>>& external) {
   StepElements elements(network, settings.integrator);
   for (const auto& force : network_forces(network, settings)) elements.add(*force);
-  if (acts_on_faces(network, settings)) elements.add(surface_air(network, settings));
+  if (const auto air = face_air(network, settings)) elements.add(*air);
   const bool penalty = has_obstacles && settings.contact.response == ContactSettings::Response::penalty;
-  if (penalty) {
-    std::vector<LinearElement> anchors;
-    append_penalty_elements(network, settings.contact.stiffness, settings.contact.damping, anchors);
-    elements.add("penalty contact", anchors);
-  }
+  if (penalty) elements.add("penalty contact", penalty_elements(network, settings));
   const std::vector<Obstacle> none;  // which bound no step
   if (!network.attachments.empty()) elements.add(AttachmentSprings(network, none, settings.step, false));
   for (const auto& force : external) elements.add(*force);
@@ -142,19 +131,6 @@ SpectralBounds simulation_bounds(const SpringNetwork& network, const SimulatorSe
   ++counted_bounds;
   const bool change = !std::ranges::all_of(network.pins, &Pin::holds_always);
   return bounds_of(change ? freest(network) : network, settings, has_obstacles, external);
-}
-
-bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settings) {
-  return !settings.air_surface.is_zero() && has_triangles(network);
-}
-
-double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings) {
-  double drag = 0.0;
-  for (Index i = 0; settings.air_drag > 0.0 && i < network.particle_count(); ++i) {
-    drag = std::max(drag, settings.air_drag * network.drag_areas[i] * network.inverse_masses[i]);
-  }
-  const double of_surfaces = acts_on_faces(network, settings) ? surface_air(network, settings).largest_acceleration() : 0.0;
-  return settings.gravity.norm() + drag * settings.wind.max_speed() + of_surfaces;
 }
 
 LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles) {

@@ -24,12 +24,6 @@ struct SpringNetwork;
 /// The number of calls of simulation_bounds in this process.
 [[nodiscard]] std::int64_t bounds_count();
 
-/// Whether the air acts on faces.
-[[nodiscard]] bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settings);
-
-/// An upper bound of the acceleration [m/s^2] that gravity and wind give to particles at rest.
-[[nodiscard]] double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings);
-
 /// Properties of the simulation that the stretch limit depends on.
 [[nodiscard]] LimitUse limit_use(const SpringNetwork& network, const SimulatorSettings& settings, bool has_obstacles);
 

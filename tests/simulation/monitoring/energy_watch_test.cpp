@@ -1,7 +1,7 @@
 #include "simulation/monitoring/energy_watch.h"
 
 #include "network/network_builder.h"
-#include "simulation/model/network_forces.h"
+#include "simulation/model/force_factory.h"
 
 #include <gtest/gtest.h>
 

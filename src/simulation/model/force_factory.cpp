@@ -1,0 +1,87 @@
+#include "simulation/model/force_factory.h"
+
+#include "dynamics/constraints/carried_surface.h"
+#include "dynamics/constraints/cell_volume.h"
+#include "dynamics/constraints/enclosed_volume.h"
+#include "dynamics/contact/penalty_contact.h"
+#include "dynamics/forces/bending_angle_force.h"
+#include "dynamics/forces/gravity_and_drag.h"
+#include "dynamics/forces/material_dampers.h"
+#include "dynamics/forces/pressure_force.h"
+#include "dynamics/forces/spring_force.h"
+#include "dynamics/forces/surface_air_force.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+/// With quadratic drag at any speed, as implicit schemes take it.
+SurfaceAirForce air_without_steps(const SpringNetwork& network, const SimulatorSettings& settings) {
+  return {network, settings.air_surface, settings.wind, settings.gravity.norm(), 0.0};
+}
+
+bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settings) {
+  return !settings.air_surface.is_zero() && has_triangles(network);
+}
+
+}  // namespace
+
+Forces network_forces(const SpringNetwork& network, const SimulatorSettings& settings, MaterialDampers dampers) {
+  Forces forces;
+  forces.push_back(std::make_unique<Gravity>(network, settings.gravity));
+  const bool bends = network.angle_bends.count() + network.face_bends.count() > 0;
+  if (dampers == MaterialDampers::within) {
+    forces.push_back(std::make_unique<SpringForce>(network));
+    if (bends) forces.push_back(std::make_unique<BendingAngleForce>(network));
+  } else {
+    forces.push_back(std::make_unique<SpringForce>(network, springs_without_material_dampers(network)));
+    if (bends) forces.push_back(std::make_unique<BendingAngleForce>(network, bends_without_material_dampers(network)));
+  }
+  if (settings.air_drag > 0.0) forces.push_back(std::make_unique<AirDrag>(network, settings.air_drag, settings.wind));
+  if (has_pressure(network)) forces.push_back(std::make_unique<PressureForce>(network));
+  return forces;
+}
+
+std::unique_ptr<Force> face_air(const SpringNetwork& network, const SimulatorSettings& settings) {
+  if (!acts_on_faces(network, settings)) return nullptr;
+  const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
+  return std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(),
+                                           implicit ? 0.0 : settings.step);
+}
+
+std::unique_ptr<ContactForce> penalty_contact(const SpringNetwork& network, const SimulatorSettings& settings,
+                                              const ObstacleSet& obstacles) {
+  if (settings.contact.response != ContactSettings::Response::penalty || obstacles.empty()) return nullptr;
+  return std::make_unique<PenaltyContact>(network, obstacles, settings.contact.stiffness, settings.contact.damping, settings.step);
+}
+
+std::vector<LinearElement> penalty_elements(const SpringNetwork& network, const SimulatorSettings& settings) {
+  std::vector<LinearElement> anchors;
+  append_penalty_elements(network, settings.contact.stiffness, settings.contact.damping, anchors);
+  return anchors;
+}
+
+Forces dampers_of_materials(const SpringNetwork& network, double most) { return material_dampers(network, most); }
+
+Constraints network_constraints(const SpringNetwork& network) {
+  Constraints constraints;
+  const auto any = [&](const auto& asks) { return std::ranges::any_of(network.bodies, asks); };
+  if (any([](const Body& body) { return !body.carried.empty(); })) constraints.push_back(std::make_shared<CarriedSurface>(network));
+  if (any([](const Body& body) { return body.preserve_volume; })) constraints.push_back(std::make_shared<CellVolume>(network));
+  if (any([](const Body& body) { return body.volume_factor != 0.0; })) {
+    constraints.push_back(std::make_shared<EnclosedVolume>(network));
+  }
+  return constraints;
+}
+
+double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings) {
+  double drag = 0.0;
+  for (Index i = 0; settings.air_drag > 0.0 && i < network.particle_count(); ++i) {
+    drag = std::max(drag, settings.air_drag * network.drag_areas[i] * network.inverse_masses[i]);
+  }
+  const double of_faces = acts_on_faces(network, settings) ? air_without_steps(network, settings).largest_acceleration() : 0.0;
+  return settings.gravity.norm() + drag * settings.wind.max_speed() + of_faces;
+}
+
+}  // namespace sprung
