@@ -77,7 +77,7 @@ void truncation_near(benchmark::State& state) {
   const Cloth cloth = cloth_on(mesh);
   StepTruncation space(obstacles,
                        make_collision_surface({}, cloth.before, std::vector<Index>(kParticles, 0), cloth.thickness,
-                                              std::vector<char>(kParticles, 0), {0}, {0}),
+                                              ParticleMotions(kParticles), {0}, {0}),
                        cloth.before, kMargin);
   TruncationResult truncation;
   for (auto _ : state) {

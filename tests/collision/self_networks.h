@@ -15,7 +15,7 @@ struct SelfNetwork {
   Points positions;
   std::vector<Element> elements;
   std::vector<Index> body_of;
-  std::vector<char> pinned;
+  ParticleMotions motions;
   Index bodies = 0;
 
   [[nodiscard]] Index count() const { return static_cast<Index>(positions.cols()); }
@@ -56,7 +56,7 @@ struct SelfNetwork {
   /// Every body collides with itself and all others.
   [[nodiscard]] CollisionSurface surface(double thickness) const {
     const std::vector<char> all(static_cast<std::size_t>(bodies), 1);
-    return make_collision_surface(elements, positions, body_of, Scalars::Constant(count(), thickness), pinned, all, all);
+    return make_collision_surface(elements, positions, body_of, Scalars::Constant(count(), thickness), motions, all, all);
   }
 
  private:
@@ -64,7 +64,7 @@ struct SelfNetwork {
     positions.conservativeResize(3, count() + 1);
     positions.col(count() - 1) = position;
     body_of.push_back(bodies);
-    pinned.push_back(0);
+    motions.push_back(ParticleMotion::free);
   }
 };
 

@@ -31,15 +31,15 @@ std::vector<DivisionPlanes::Bound> sorted(const std::vector<DivisionPlanes::Boun
 
 }  // namespace
 
-DivisionPlanes::DivisionPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned,
+DivisionPlanes::DivisionPlanes(const Points& before, const Points& targets, const ParticleMotions& motions,
                                const ParticleDisplacements& displacements, double kept)
     : before_(before),
       targets_(targets),
-      pinned_(pinned),
-      groups_(before, targets, pinned, displacements),
+      motions_(motions),
+      groups_(before, targets, motions, displacements),
       ends_(targets),
       tolerance_{.thickness_kept = kept, .clearance = kClearance * before.cwiseAbs().maxCoeff()},
-      relaxation_(before, pinned, tolerance_),
+      relaxation_(before, motions, tolerance_),
       is_aside_(static_cast<std::size_t>(before.cols()), 0) {}
 
 bool DivisionPlanes::constrain(std::vector<ContactStencil>& pairs) {
@@ -75,7 +75,7 @@ std::vector<Index> DivisionPlanes::find_passing(std::vector<ContactStencil>& pai
       ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
       if (!(heights_at(pair, ends_).gap() < tolerance_.least())) continue;
       pair.normal = separating_direction(pair, before_);
-      if (passes(pair) && !is_rigidly_pinned(pair)) batches[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
+      if (passes(pair) && !is_fixed_rigidly(pair)) batches[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
     }
   });
   std::vector<Index> passing;
@@ -83,11 +83,11 @@ std::vector<Index> DivisionPlanes::find_passing(std::vector<ContactStencil>& pai
   return passing;
 }
 
-bool DivisionPlanes::is_rigidly_pinned(const ContactStencil& pair) const {
+bool DivisionPlanes::is_fixed_rigidly(const ContactStencil& pair) const {
   std::vector<PinDisplacement> pins;
   for (int k = 0; k < pair.count(); ++k) {
     const Index i = pair.particles[static_cast<std::size_t>(k)];
-    if (!is_pinned(i)) return false;
+    if (!is_fixed(motions_, i)) return false;
     pins.push_back({before_.col(i), targets_.col(i)});
   }
   const auto motion = rigid_motion_of(pins);
@@ -147,8 +147,8 @@ bool DivisionPlanes::passes(const ContactStencil& pair) const {
   const double begun = heights_at(pair, before_).gap();
   if (!(begun > 0.0)) return false;
   const Index group = group_of(pair, begun);
-  const bool has_pins = pair.any_of([&](Index i) { return is_pinned(i); });
-  if (group != kNone && groups_.fraction(group) == 0.0 && !has_pins) return false;
+  const bool has_fixed = pair.any_of([&](Index i) { return is_fixed(motions_, i); });
+  if (group != kNone && groups_.fraction(group) == 0.0 && !has_fixed) return false;
   const double end = heights_at(moved(pair, group), ends_).gap();
   return end < tolerance_.needed(begun);
 }
@@ -162,7 +162,7 @@ Index DivisionPlanes::group_of(const ContactStencil& pair, double gap) const {
   Index group = kNone;
   for (int k = 0; k < pair.count(); ++k) group = std::max(group, groups_.group(pair.particles[static_cast<std::size_t>(k)]));
   const auto is_of = [&](Index i) {
-    return groups_.group(i) == group || (is_pinned(i) && groups_.moves_to_target(group, i, kMaxPinError * gap));
+    return groups_.group(i) == group || (is_fixed(motions_, i) && groups_.moves_to_target(group, i, kMaxPinError * gap));
   };
   return std::all_of(pair.particles.begin(), pair.particles.begin() + pair.count(), is_of) ? group : kNone;
 }

@@ -20,7 +20,7 @@ class DivisionPlanes {
  public:
   /// Begins a step without constraints. Constrained sides keep a gap of `kept` [m] if they can. For the other arguments, to which
   /// it keeps references, see MotionGroups.
-  DivisionPlanes(const Points& before, const Points& targets, const std::vector<char>& pinned,
+  DivisionPlanes(const Points& before, const Points& targets, const ParticleMotions& motions,
                  const ParticleDisplacements& displacements, double kept);
 
   /// Constrains the particles of pairs that would pass each other on the path to their current ends. A pair whose normal no longer
@@ -65,11 +65,10 @@ class DivisionPlanes {
   template <class Passes>
   [[nodiscard]] std::vector<Index> find_passing(std::vector<ContactStencil>& pairs, const Passes& passes) const;
   [[nodiscard]] bool passes(const ContactStencil& pair) const;
-  /// Whether all particles of the pair are pinned and move as a rigid body.
-  [[nodiscard]] bool is_rigidly_pinned(const ContactStencil& pair) const;
-  [[nodiscard]] bool is_pinned(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0; }
+  /// Whether all particles of the pair are fixed and move as a rigid body.
+  [[nodiscard]] bool is_fixed_rigidly(const ContactStencil& pair) const;
   [[nodiscard]] bool is_constrained(Index i) const { return groups_.contains(i) || is_aside_[static_cast<std::size_t>(i)] != 0; }
-  /// The group with all free particles of the pair, if its motion also fits the pinned ones; else kNone. The sides begin the step
+  /// The group with all free particles of the pair, if its motion also fits the fixed ones; else kNone. The sides begin the step
   /// with this `gap` [m].
   [[nodiscard]] Index group_of(const ContactStencil& pair, double gap) const;
   /// The pair with its normal after the group's motion.
@@ -83,7 +82,7 @@ class DivisionPlanes {
 
   const Points& before_;
   const Points& targets_;
-  const std::vector<char>& pinned_;
+  const ParticleMotions& motions_;
   MotionGroups groups_;
   Points ends_;
   std::vector<Index> passing_;

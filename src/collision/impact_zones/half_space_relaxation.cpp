@@ -22,8 +22,8 @@ Inequality(Height, Vector3, double) -> Inequality<Height>;
 /// Moves the ends of one pair after another.
 class Sweep {
  public:
-  Sweep(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule, Points& ends)
-      : before_(before), pinned_(pinned), rule_(rule), ends_(ends), moved_at_(static_cast<std::size_t>(before.cols()), 0) {}
+  Sweep(const Points& before, const ParticleMotions& motions, const SeparationTolerance& rule, Points& ends)
+      : before_(before), motions_(motions), rule_(rule), ends_(ends), moved_at_(static_cast<std::size_t>(before.cols()), 0) {}
 
   /// Returns whether the sides were apart already.
   bool push_apart(const ContactStencil& pair, int number) {
@@ -31,7 +31,7 @@ class Sweep {
     if (own >= rule_.least()) return true;
     const double begun = heights_at(pair, before_).gap();
     if (!(begun > 0.0) || own >= rule_.needed(begun)) return true;
-    const RotatingPlane plane = rotating_plane(pair, before_, ends_, pinned_);
+    const RotatingPlane plane = rotating_plane(pair, before_, ends_, motions_);
     const auto at_end = [&](int k) { return plane.end.dot(ends_.col(particle(pair, k))); };
     const auto midway = [&](int k) { return midway_height(plane, before_.col(particle(pair, k)), ends_.col(particle(pair, k))); };
     const bool apart_at_end = push(pair, begun, Inequality{at_end, plane.end, 1.0}, number);
@@ -61,7 +61,7 @@ class Sweep {
     return false;
   }
 
-  [[nodiscard]] double share_of(Index i) const { return pinned_[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0; }
+  [[nodiscard]] double share_of(Index i) const { return is_fixed(motions_, i) ? 0.0 : 1.0; }
 
   void move(Index i, const Vector3& displacement, int number) {
     if (share_of(i) == 0.0) return;
@@ -72,7 +72,7 @@ class Sweep {
   }
 
   const Points& before_;
-  const std::vector<char>& pinned_;
+  const ParticleMotions& motions_;
   const SeparationTolerance& rule_;
   Points& ends_;
   std::vector<int> moved_at_;  ///< number of the last sweep that moved it, by particle; 0 if none did
@@ -81,14 +81,14 @@ class Sweep {
 
 }  // namespace
 
-HalfSpaceRelaxation::HalfSpaceRelaxation(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule)
-    : before_(before), pinned_(pinned), rule_(rule) {}
+HalfSpaceRelaxation::HalfSpaceRelaxation(const Points& before, const ParticleMotions& motions, const SeparationTolerance& rule)
+    : before_(before), motions_(motions), rule_(rule) {}
 
 std::optional<RotatingPlane> HalfSpaceRelaxation::plane(const ContactStencil& pair, const Points& ends) const {
   const double begun = heights_at(pair, before_).gap();
   if (!(begun > 0.0)) return std::nullopt;
   if (heights_at(pair, ends).gap() >= rule_.needed(begun)) return RotatingPlane{pair.normal, pair.normal};
-  return rotating_plane(pair, before_, ends, pinned_);
+  return rotating_plane(pair, before_, ends, motions_);
 }
 
 bool HalfSpaceRelaxation::passes(const ContactStencil& pair, const Points& ends) const {
@@ -101,7 +101,7 @@ bool HalfSpaceRelaxation::passes(const ContactStencil& pair, const Points& ends)
 }
 
 std::vector<Index> HalfSpaceRelaxation::move_apart(const std::vector<ContactStencil>& pairs, Points& ends) const {
-  Sweep sweep(before_, pinned_, rule_, ends);
+  Sweep sweep(before_, motions_, rule_, ends);
   bool apart = false;
   for (int number = 1; number <= kSweeps && !apart; ++number) {
     apart = true;

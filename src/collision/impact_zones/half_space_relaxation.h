@@ -14,8 +14,8 @@ namespace sprung {
 /// 1954).
 class HalfSpaceRelaxation {
  public:
-  /// The step begins at `before` [m], 3 x n. Pinned particles (not 0) do not move. Keeps references to all arguments.
-  HalfSpaceRelaxation(const Points& before, const std::vector<char>& pinned, const SeparationTolerance& rule);
+  /// The step begins at `before` [m], 3 x n. Fixed particles do not move. Keeps references to all arguments.
+  HalfSpaceRelaxation(const Points& before, const ParticleMotions& motions, const SeparationTolerance& rule);
 
   /// A plane for the motion to `ends` [m]: with the pair's constant normal if that separates the sides, else a rotating one. Empty
   /// if the sides touch at the step's begin.
@@ -30,7 +30,7 @@ class HalfSpaceRelaxation {
 
  private:
   const Points& before_;
-  const std::vector<char>& pinned_;
+  const ParticleMotions& motions_;
   const SeparationTolerance& rule_;
 };
 

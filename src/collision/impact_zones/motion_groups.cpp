@@ -6,11 +6,11 @@
 
 namespace sprung {
 
-MotionGroups::MotionGroups(const Points& before, const Points& targets, const std::vector<char>& pinned,
+MotionGroups::MotionGroups(const Points& before, const Points& targets, const ParticleMotions& motions,
                            const ParticleDisplacements& displacements)
     : before_(before),
       targets_(targets),
-      pinned_(pinned),
+      motions_(motions),
       displacements_(displacements),
       parent_(static_cast<std::size_t>(before.cols()), kNone),
       locked_(parent_.size(), 0),
@@ -21,7 +21,7 @@ bool MotionGroups::unite(std::span<const Index> particles) {
   bool changed = false;
   bool locked = false;
   for (const Index i : particles) {
-    if (pinned_[static_cast<std::size_t>(i)] != 0) continue;
+    if (is_fixed(motions_, i)) continue;
     if (!contains(i)) {
       parent_[static_cast<std::size_t>(i)] = i;
       particles_.push_back(i);
@@ -39,8 +39,8 @@ bool MotionGroups::unite(std::span<const Index> particles) {
   if (first == kNone) return false;
   char& lock = locked_[static_cast<std::size_t>(first)];
   for (const Index i : particles) {
-    if (pinned_[static_cast<std::size_t>(i)] == 0 || is_pinned_by(first, i)) continue;
-    pinned_by_.push_back({first, i});
+    if (!is_fixed(motions_, i) || is_fixed_by(first, i)) continue;
+    fixed_by_.push_back({first, i});
     changed = true;
   }
   if (!changed && lock == 0) {
@@ -51,9 +51,9 @@ bool MotionGroups::unite(std::span<const Index> particles) {
   return changed;
 }
 
-bool MotionGroups::is_pinned_by(Index root_particle, Index pin) const {
-  return std::any_of(pinned_by_.begin(), pinned_by_.end(),
-                     [&](const PinnedBy& entry) { return entry.pin == pin && root(entry.particle) == root_particle; });
+bool MotionGroups::is_fixed_by(Index root_particle, Index pin) const {
+  return std::any_of(fixed_by_.begin(), fixed_by_.end(),
+                     [&](const FixedBy& entry) { return entry.pin == pin && root(entry.particle) == root_particle; });
 }
 
 void MotionGroups::find_motions() {
@@ -116,7 +116,7 @@ void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
 
 std::vector<std::vector<Index>> MotionGroups::pins_of_groups() const {
   std::vector<std::vector<Index>> pins(groups_.size());
-  for (const PinnedBy& entry : pinned_by_) pins[static_cast<std::size_t>(group(entry.particle))].push_back(entry.pin);
+  for (const FixedBy& entry : fixed_by_) pins[static_cast<std::size_t>(group(entry.particle))].push_back(entry.pin);
   for (std::vector<Index>& of_group : pins) {
     std::sort(of_group.begin(), of_group.end());
     of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());

@@ -4,6 +4,7 @@
 
 #include "collision/impact_zones/moved_plane.h"
 #include "collision/obstacle_regions/kinematic_anchor.h"
+#include "collision/surface/collision_surface.h"
 
 #include <span>
 #include <vector>
@@ -20,11 +21,11 @@ struct ParticleDisplacements {
 /// towards their targets. A locked group has the fraction 0, so that only the reference motion moves it.
 class MotionGroups {
  public:
-  /// Begins without groups. Pinned particles (not 0) never belong to one. Positions [m], 3 x n. Keeps references to all arguments.
-  MotionGroups(const Points& before, const Points& targets, const std::vector<char>& pinned,
+  /// Begins without groups. Fixed particles never belong to one. Positions [m], 3 x n. Keeps references to all arguments.
+  MotionGroups(const Points& before, const Points& targets, const ParticleMotions& motions,
                const ParticleDisplacements& displacements);
 
-  /// Merges these particles and their groups into one group, which follows the pinned particles among them. If they are one group
+  /// Merges these particles and their groups into one group, which follows the fixed particles among them. If they are one group
   /// already, locks it. Returns whether anything has changed. It returns true a finite number of times, because groups only grow,
   /// gain pins and become locked.
   bool unite(std::span<const Index> particles);
@@ -70,13 +71,13 @@ class MotionGroups {
     bool rotates = false;  ///< the motion may be more than a translation
     bool anchored = false;
   };
-  struct PinnedBy {
+  struct FixedBy {
     Index particle;  ///< of the group
     Index pin;
   };
 
   [[nodiscard]] Index root(Index particle) const;
-  [[nodiscard]] bool is_pinned_by(Index root_particle, Index pin) const;
+  [[nodiscard]] bool is_fixed_by(Index root_particle, Index pin) const;
   void number_groups();
   void find_means(const std::vector<std::vector<Index>>& pins);
   /// By group; ascending.
@@ -87,12 +88,12 @@ class MotionGroups {
 
   const Points& before_;
   const Points& targets_;
-  const std::vector<char>& pinned_;
+  const ParticleMotions& motions_;
   const ParticleDisplacements& displacements_;
   std::vector<Index> parent_;  ///< union-find, by particle: another of its group or itself; kNone without a group
   std::vector<Index> particles_;
   std::vector<char> locked_;  ///< by particle that is its own parent
-  std::vector<PinnedBy> pinned_by_;
+  std::vector<FixedBy> fixed_by_;
   std::vector<Index> number_;  ///< of the group, by particle; kNone without a group
   std::vector<Group> groups_;
 };

@@ -51,7 +51,10 @@ void PairSeparation::begin_step(const Points& before, const Points& after, std::
   append_self_contacts(self.surface, self.list.topology(), self.list.candidates(), before, after, contacts);
 }
 
-void PairSeparation::forget() { implementation_->list.forget(); }
+void PairSeparation::forget() {
+  implementation_->list.forget();
+  implementation_->rotated = false;
+}
 
 void PairSeparation::begin_substep(const Points& before, const Points& after) {
   implementation_->list.begin_substep(before, after);
@@ -60,7 +63,7 @@ void PairSeparation::begin_substep(const Points& before, const Points& after) {
 const std::vector<Index>& PairSeparation::constrain(const Points& before, const Points& targets,
                                                     const ParticleDisplacements& displacements) {
   Implementation& self = *implementation_;
-  DivisionPlanes planes(before, targets, self.surface.pinned, displacements, kKeptFraction * self.surface.thickness.minCoeff());
+  DivisionPlanes planes(before, targets, self.surface.motions, displacements, kKeptFraction * self.surface.thickness.minCoeff());
   self.list.follow(before, targets);
   if (self.rotated) planes.renew_normals(self.list.pairs());
   // constrain() returns true a finite number of times, because groups only grow, gain pins and become locked; relax() at most six
@@ -95,19 +98,19 @@ bool PairSeparation::passes(Index particle) const {
   return std::binary_search(implementation_->passing.begin(), implementation_->passing.end(), particle);
 }
 
-std::vector<Index> PairSeparation::passing_pins() const {
+std::vector<Index> PairSeparation::passing_fixed() const {
   const CollisionSurface& surface = implementation_->surface;
-  const auto is_pinned = [&](Index i) { return surface.pinned[static_cast<std::size_t>(i)] != 0; };
-  std::vector<Index> pins;
+  const auto is_driven = [&](Index i) { return surface.motions[static_cast<std::size_t>(i)] == ParticleMotion::driven; };
+  std::vector<Index> fixed;
   for (const Index i : implementation_->passing) {
-    if (!is_pinned(i) || (!pins.empty() && pins.back() == i)) continue;
+    if (!is_fixed(surface.motions, i) || (!fixed.empty() && fixed.back() == i)) continue;
     const auto elements = implementation_->list.topology().elements_at(i);
-    const bool has_free_particle = std::ranges::any_of(elements, [&](Index e) {
-      return !std::ranges::all_of(corners_of(surface.elements[static_cast<std::size_t>(e)]), is_pinned);
+    const bool driven_as_a_whole = std::ranges::all_of(elements, [&](Index e) {
+      return std::ranges::all_of(corners_of(surface.elements[static_cast<std::size_t>(e)]), is_driven);
     });
-    if (has_free_particle) pins.push_back(i);
+    if (!driven_as_a_whole) fixed.push_back(i);
   }
-  return pins;
+  return fixed;
 }
 
 bool PairSeparation::allows(Index particle, const Vector3& p) const {

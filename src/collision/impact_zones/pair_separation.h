@@ -28,14 +28,15 @@ class PairSeparation {
   /// step: their gap is the mean of the two thicknesses, but at most `most_gap`.
   void begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts);
 
-  /// Discards the data kept between steps. Call it if the next step does not begin where the last one ended.
+  /// Discards the data kept between steps. Call it if the next step does not begin where the last one ended, or if the motions of
+  /// particles were replaced.
   void forget();
 
   /// Begins a substep from `before` [m], where nothing crosses, to expected positions `after`. The calls that follow refer to it.
   void begin_substep(const Points& before, const Points& after);
 
   /// Constrains the particles that would pass each other on the path to their `targets` [m], and returns them, ascending. All
-  /// others may end at their targets; pinned particles do so in any case. `displacements` are those that obstacles impose.
+  /// others may end at their targets; fixed particles do so in any case. `displacements` are those that obstacles impose.
   /// Requires begin_step() or begin_substep() with the same `before`.
   const std::vector<Index>& constrain(const Points& before, const Points& targets, const ParticleDisplacements& displacements = {});
 
@@ -58,8 +59,9 @@ class PairSeparation {
   /// them.
   [[nodiscard]] bool passes(Index particle) const;
 
-  /// Pinned particles of such elements that share an element with a free particle; ascending.
-  [[nodiscard]] std::vector<Index> passing_pins() const;
+  /// Fixed particles of such elements, ascending. Driven ones count only if they share an element with another kind: what pins
+  /// drive as a whole passes through other elements that they drive as a whole by intention.
+  [[nodiscard]] std::vector<Index> passing_fixed() const;
 
   /// Whether the constrained particle may end at p [m]: it is in all half-spaces and in the sphere.
   [[nodiscard]] bool allows(Index particle, const Vector3& p) const;

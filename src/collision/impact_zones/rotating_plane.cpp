@@ -11,9 +11,8 @@ constexpr double kWeightOfPins = 1024.0;
 
 }  // namespace
 
-RotatingPlane rotating_plane(const ContactStencil& pair, const Points& before, const Points& ends,
-                             const std::vector<char>& pinned) {
-  const auto weight = [&](Index i) { return pinned[static_cast<std::size_t>(i)] != 0 ? kWeightOfPins : 1.0; };
+RotatingPlane rotating_plane(const ContactStencil& pair, const Points& before, const Points& ends, const ParticleMotions& motions) {
+  const auto weight = [&](Index i) { return is_fixed(motions, i) ? kWeightOfPins : 1.0; };
   Vector3 center_before = Vector3::Zero();
   Vector3 center_after = Vector3::Zero();
   double sum = 0.0;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "collision/pairs/contact_stencil.h"
+#include "collision/surface/collision_surface.h"
 
 #include <vector>
 
@@ -21,9 +22,9 @@ struct RotatingPlane {
   return 0.5 * (plane.begin.dot(x1) + plane.end.dot(x0));
 }
 
-/// Begins with the pair's normal and rotates with its particles from `before` to `ends` [m]. Pinned particles dominate the
+/// Begins with the pair's normal and rotates with its particles from `before` to `ends` [m]. Fixed particles dominate the
 /// rotation, because they cannot yield.
 [[nodiscard]] RotatingPlane rotating_plane(const ContactStencil& pair, const Points& before, const Points& ends,
-                                           const std::vector<char>& pinned);
+                                           const ParticleMotions& motions);
 
 }  // namespace sprung

@@ -130,16 +130,16 @@ void ObstacleMotion::append_pushes(Index p, const PatchSafeRegions& regions, con
   const Index k = regions.obstacle();
   for (Index e = 0; e < topology.element_count(); ++e) {
     const SafeRegion& region = regions.region(e);
-    if (!topology.corners(e).pinned || region.broken || !std::isfinite(region.distance)) continue;
+    if (!topology.corners(e).fixed || region.broken || !std::isfinite(region.distance)) continue;
     const Vector3 normal = obstacles_.before(k).linear() * region.normal;
     const auto corners = corners_of(surface_.elements[at(surface_.patches[at(p)].first_element + e)]);
     double approach = 0.0;
     for (const Index i : corners) {
-      if (surface_.pinned[at(i)] == 0) continue;
+      if (!is_fixed(surface_.motions, i)) continue;
       approach = std::max(approach, normal.dot(obstacles_.moved_position(k, paths.from.col(i)) - paths.to.col(i)));
     }
     for (const Index i : corners) {
-      if (surface_.pinned[at(i)] == 0 && approach > 0.0)
+      if (!is_fixed(surface_.motions, i) && approach > 0.0)
         pushes.push_back({i, region.distance, approach * normal, regions_.patches_[at(p)].size});
     }
   }

@@ -26,7 +26,7 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
     : surface_(surface),
       margin_(margin),
       rest_(rest),
-      permitted_(set.obstacles().size(), std::vector<char>(surface.pinned.size(), 0)) {
+      permitted_(set.obstacles().size(), std::vector<char>(surface.motions.size(), 0)) {
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
     const ElementPatch& elements = surface.patches[p];
     Patch patch{.topology = PatchTopology(surface, elements)};
@@ -35,10 +35,18 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
     for (std::size_t slot = 0; slot < elements.particles.size(); ++slot) {
       const Index i = elements.particles[slot];
       patch.thickness = std::max(patch.thickness, surface.thickness[i]);
-      patch.pinned = patch.pinned && surface.pinned[at(i)] != 0;
       patch.own.push_back(at(slots_of(i).front().patch) == p ? 1 : 0);
     }
     patches_.push_back(std::move(patch));
+  }
+  find_fixed();
+}
+
+void ObstacleSafeRegions::find_fixed() {
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const ElementPatch& elements = surface_.patches[p];
+    patches_[p].topology.find_fixed(surface_, elements);
+    patches_[p].fixed = std::ranges::all_of(elements.particles, [&](Index i) { return is_fixed(surface_.motions, i); });
   }
 }
 
@@ -65,7 +73,7 @@ void ObstacleSafeRegions::update(const StepPaths& paths) {
 
 bool ObstacleSafeRegions::stands_still(Index p, const StepPaths& paths) const {
   const Patch& patch = patches_[at(p)];
-  return !paths.obstacles.set().moves() && patch.pinned && !patch.known.isEmpty() &&
+  return !paths.obstacles.set().moves() && patch.fixed && !patch.known.isEmpty() &&
          std::ranges::all_of(particles_of(p), [&](Index i) { return paths.from.col(i) == paths.to.col(i); });
 }
 

@@ -21,6 +21,9 @@ class ObstacleSafeRegions {
   /// surface. Frames in later calls must be those of `set`.
   ObstacleSafeRegions(const ObstacleSet& set, const CollisionSurface& surface, const Points& rest, double margin);
 
+  /// Reads again which particles of the surface are fixed.
+  void find_fixed();
+
   /// Makes regions for elements near obstacles that have none, or leave theirs on these paths.
   void update(const StepPaths& paths);
 
@@ -54,7 +57,7 @@ class ObstacleSafeRegions {
 
   /// Whether the regions of all elements around the particle contain the position at the end of the interval.
   [[nodiscard]] bool allow(const ObstacleFrame& obstacles, Index particle, const Vector3& position) const;
-  /// Whether the particle and its neighbours are pinned and did not move in the last update(), and no obstacle ever moves: nothing
+  /// Whether the particle and its neighbours are fixed and did not move in the last update(), and no obstacle ever moves: nothing
   /// is to be tested.
   [[nodiscard]] bool is_at_rest(Index particle) const;
   /// Whether the planes of these regions allow the position, whatever the boxes are. If so, no known obstacle is between the
@@ -82,8 +85,8 @@ class ObstacleSafeRegions {
     Box3 known{};                             ///< all obstacles that intersect this box are in `regions`
     double size = 0.0;                        ///< of its elements [m]
     double thickness = 0.0;                   ///< largest of its particles [m]
-    bool pinned = true;                       ///< whether all its particles are
-    bool is_at_rest = false;                  ///< whether it is pinned and known, and nothing moved in the last update()
+    bool fixed = false;                       ///< whether all its particles are
+    bool is_at_rest = false;                  ///< whether it is fixed and known, and nothing moved in the last update()
   };
 
   void set_permitted(PermittedCrossings crossings);

@@ -11,7 +11,6 @@ PatchTopology::PatchTopology(const CollisionSurface& surface, const ElementPatch
     for (std::size_t k = 0; k < static_cast<std::size_t>(element.corners); ++k) {
       const auto position = std::lower_bound(patch.particles.begin(), patch.particles.end(), element.particles[k]);
       corners.slots[k] = static_cast<Index>(position - patch.particles.begin());
-      corners.pinned = corners.pinned || surface.pinned[static_cast<std::size_t>(element.particles[k])] != 0;
       ++first_[static_cast<std::size_t>(corners.slots[k]) + 1];
     }
     corners_.push_back(corners);
@@ -24,6 +23,13 @@ PatchTopology::PatchTopology(const CollisionSurface& surface, const ElementPatch
       const auto slot = static_cast<std::size_t>(corners_[e].slots[k]);
       elements_[static_cast<std::size_t>(next[slot]++)] = static_cast<Index>(e);
     }
+  }
+}
+
+void PatchTopology::find_fixed(const CollisionSurface& surface, const ElementPatch& patch) {
+  for (std::size_t e = 0; e < corners_.size(); ++e) {
+    corners_[e].fixed = std::ranges::any_of(corners_of(surface.elements[static_cast<std::size_t>(patch.first_element) + e]),
+                                            [&](Index i) { return is_fixed(surface.motions, i); });
   }
 }
 

@@ -37,14 +37,12 @@ class PatchSearch {
   }
 
  private:
-  [[nodiscard]] bool is_pinned(Index particle) const { return surface_.pinned[static_cast<std::size_t>(particle)] != 0; }
-
   [[nodiscard]] double tolerance(const Vector3& position, Index k) const {
     return kTouching * frame_.clearance(k, position, position);
   }
 
   void find_inside(Index particle, Index k, Intersections& found) const {
-    if (is_pinned(particle)) return;
+    if (is_fixed(surface_.motions, particle)) return;
     const Vector3 p = frame_.local(k, positions_.col(particle));
     if (!frame_.shape(k).contains(p)) return;
     const auto surface = frame_.shape(k).nearest(p, std::numeric_limits<double>::infinity());
@@ -55,20 +53,20 @@ class PatchSearch {
     const Element& element = surface_.elements[static_cast<std::size_t>(e)];
     ElementCorners corners{.x = {}, .count = element.corners};
     double within = 0.0;
-    int pinned = 0;
+    int fixed = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(element.corners); ++i) {
       const Vector3 x = positions_.col(element.particles[i]);
       corners.x[i] = frame_.local(k, x);
       within = std::max(within, tolerance(x, k));
-      pinned += is_pinned(element.particles[i]) ? 1 : 0;
+      fixed += is_fixed(surface_.motions, element.particles[i]) ? 1 : 0;
     }
-    if (pinned == element.corners || !frame_.shape(k).touches(corners, within)) return;
-    if (pinned == 0 || !hangs_from_pin_in(element, k)) found.crossings.push_back({e, k});
+    if (fixed == element.corners || !frame_.shape(k).touches(corners, within)) return;
+    if (fixed == 0 || !is_fixed_in(element, k)) found.crossings.push_back({e, k});
   }
 
-  [[nodiscard]] bool hangs_from_pin_in(const Element& element, Index k) const {
+  [[nodiscard]] bool is_fixed_in(const Element& element, Index k) const {
     return std::any_of(element.particles.begin(), element.particles.begin() + element.corners, [&](Index i) {
-      if (!is_pinned(i)) return false;
+      if (!is_fixed(surface_.motions, i)) return false;
       const Vector3 p = frame_.local(k, positions_.col(i));
       return frame_.shape(k).contains(p) || frame_.shape(k).touches({.x = {p}, .count = 1}, tolerance(positions_.col(i), k));
     });

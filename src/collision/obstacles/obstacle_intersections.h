@@ -30,8 +30,8 @@ struct Intersections {
 
 /// Finds all intersections at the end of the frame's interval. `positions` [m] must be finite. Crossings of meshes and
 /// particles inside are decided exactly, touching with a tolerance of 2^-40 of the coordinates. If the result is empty, every
-/// element has a safe region. Not reported are pinned particles, elements with only pinned particles, and elements with a pin in
-/// or on the same obstacle. `body` limits the search to one body. The result does not depend on the number of threads.
+/// element has a safe region. Not reported are fixed particles, elements with only fixed particles, and elements with a fixed
+/// particle in or on the same obstacle. `body` limits the search to one body. The result does not depend on the number of threads.
 [[nodiscard]] Intersections find_intersections(const ObstacleFrame& frame, const CollisionSurface& surface, const Points& positions,
                                                Index body = kNone);
 

@@ -99,7 +99,7 @@ Points element_middles(const std::vector<Element>& elements, const Points& posit
 }
 
 CollisionSurface make_collision_surface(std::vector<Element> elements, const Points& positions, const std::vector<Index>& body_of,
-                                        Scalars thickness, std::vector<char> pinned, std::vector<char> self,
+                                        Scalars thickness, ParticleMotions motions, std::vector<char> self,
                                         std::vector<char> others) {
   add_single_particles(body_of, elements);
   std::vector<std::size_t> starts = sort_into_patches(positions, elements);
@@ -108,7 +108,7 @@ CollisionSurface make_collision_surface(std::vector<Element> elements, const Poi
   CollisionSurface surface{.elements = std::move(elements),
                            .patches = {},
                            .thickness = std::move(thickness),
-                           .pinned = std::move(pinned),
+                           .motions = std::move(motions),
                            .self = std::move(self),
                            .others = std::move(others),
                            .element_size = {},

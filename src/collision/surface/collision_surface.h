@@ -4,6 +4,7 @@
 #include "base/types.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,19 @@ struct Element {
 /// The mean of each element's corners [m], one column per element.
 [[nodiscard]] Points element_middles(const std::vector<Element>& elements, const Points& positions);
 
+/// What moves a particle in a step.
+enum class ParticleMotion : std::uint8_t {
+  free,     ///< forces and contact; truncation stops it
+  driven,   ///< a pin that moves, which nothing stops: the pin may take its elements through an obstacle or other elements
+  at_rest,  ///< nothing: it sleeps, or a pin holds it still. Only obstacles and driven particles may cross its elements
+};
+using ParticleMotions = std::vector<ParticleMotion>;  ///< by particle
+
+/// Whether neither contact nor truncation may move the particle: it is driven or at rest.
+[[nodiscard]] inline bool is_fixed(const ParticleMotions& motions, Index particle) {
+  return motions[static_cast<std::size_t>(particle)] != ParticleMotion::free;
+}
+
 /// Elements that are neighbours in the initial positions. The broad phase is queried once per patch.
 struct ElementPatch {
   Index first_element = 0;
@@ -41,7 +55,7 @@ struct CollisionSurface {
   std::vector<Element> elements;
   std::vector<ElementPatch> patches;
   Scalars thickness;                 ///< each particle's contribution to the gap [m]
-  std::vector<char> pinned;          ///< 1 for particles that follow their pin, even through an obstacle
+  ParticleMotions motions;           ///< of each particle; the only member that changes when pins or sleepers do
   std::vector<char> self;            ///< by body: whether its elements collide with each other
   std::vector<char> others;          ///< by body: whether they collide with those of other bodies that do so too
   std::vector<double> element_size;  ///< by body: the mean length [m] of its elements' edges; 0 for single particles
@@ -55,7 +69,7 @@ struct CollisionSurface {
 /// x n. A particle without an element gets an element of its own. `body_of` is the body of each particle; kNone: it does not
 /// collide. Element sizes are measured at `positions`. The other arguments become the members of the same name.
 [[nodiscard]] CollisionSurface make_collision_surface(std::vector<Element> elements, const Points& positions,
-                                                      const std::vector<Index>& body_of, Scalars thickness,
-                                                      std::vector<char> pinned, std::vector<char> self, std::vector<char> others);
+                                                      const std::vector<Index>& body_of, Scalars thickness, ParticleMotions motions,
+                                                      std::vector<char> self, std::vector<char> others);
 
 }  // namespace sprung

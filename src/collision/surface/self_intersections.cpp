@@ -82,10 +82,10 @@ class SelfSearch {
   /// Whether pins hold an end of both segments at one point. Ropes may do so.
   [[nodiscard]] bool hang_from_one_hook(const Element& a, const Element& b) const {
     if (is_triangle(a) || is_triangle(b)) return false;
-    const auto is_pinned = [&](Index i) { return surface_.pinned[static_cast<std::size_t>(i)] != 0; };
     return std::ranges::any_of(corners_of(a), [&](Index i) {
-      return is_pinned(i) &&
-             std::ranges::any_of(corners_of(b), [&](Index j) { return is_pinned(j) && positions_.col(i) == positions_.col(j); });
+      return is_fixed(surface_.motions, i) && std::ranges::any_of(corners_of(b), [&](Index j) {
+               return is_fixed(surface_.motions, j) && positions_.col(i) == positions_.col(j);
+             });
     });
   }
 

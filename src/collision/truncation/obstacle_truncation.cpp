@@ -42,8 +42,13 @@ void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& o
 
 ObstacleTruncation::ObstacleTruncation(const CollisionSurface& surface, ObstacleSafeRegions& regions)
     : surface_(surface), regions_(regions), truncation_(regions) {
-  for (std::size_t i = 0; i < surface.pinned.size(); ++i) {
-    if (surface.pinned[i] != 0) pinned_.push_back(static_cast<Index>(i));
+  find_fixed();
+}
+
+void ObstacleTruncation::find_fixed() {
+  fixed_.clear();
+  for (Index i = 0; i < static_cast<Index>(surface_.motions.size()); ++i) {
+    if (is_fixed(surface_.motions, i)) fixed_.push_back(i);
   }
 }
 
@@ -90,8 +95,8 @@ Outcomes ObstacleTruncation::clip_with_fresh_regions(std::vector<Index>& particl
 // obstacle arrives, farther than the obstacle moves.
 ClippedSubstep ObstacleTruncation::clip_substep(std::vector<Index>& particles, const StepPaths& paths, Points& after) {
   ClippedSubstep clipped = clip_anew(particles, paths, after);
-  if (pinned_.empty() || count(clipped.outcomes, Outcome::infeasible) == 0) return clipped;
-  regions_.renew_around(pinned_, paths);
+  if (fixed_.empty() || count(clipped.outcomes, Outcome::infeasible) == 0) return clipped;
+  regions_.renew_around(fixed_, paths);
   const std::vector<Push> pushes = ObstacleMotion(regions_, paths.obstacles).pushes_at_pins(paths);
   if (pushes.empty()) return clip_anew(particles, paths, after);
   for (const double lever : kLevers) {
@@ -112,7 +117,7 @@ ClippedSubstep ObstacleTruncation::clip_substep(std::vector<Index>& particles, c
 ClippedSubstep ObstacleTruncation::clip_anew(std::vector<Index>& particles, const StepPaths& paths, Points& after) {
   after = paths.to;
   regions_.update(paths);
-  regions_.renew_around(pinned_, paths);
+  regions_.renew_around(fixed_, paths);
   regions_.renew_around(particles, paths);
   ClippedSubstep clipped{clip_with_fresh_regions(particles, paths, after)};
   move_infeasible(regions_, paths.obstacles, particles, paths.from, after, clipped.outcomes);
@@ -125,7 +130,7 @@ ClippedSubstep ObstacleTruncation::clip_ahead(std::vector<Index>& particles, con
                                               Points& after) {
   const ObstacleFrame at_begin = paths.obstacles.part(paths.obstacles.begin(), paths.obstacles.begin());
   Points first_goals = goals;
-  for (const Index i : pinned_) first_goals.col(i) = paths.from.col(i);
+  for (const Index i : fixed_) first_goals.col(i) = paths.from.col(i);
   Points ahead = first_goals;
   const StepPaths first{at_begin, paths.from, first_goals, true};
   regions_.update(first);
@@ -136,20 +141,20 @@ ClippedSubstep ObstacleTruncation::clip_ahead(std::vector<Index>& particles, con
 
 bool ObstacleTruncation::is_kinematic(const StepPaths& paths) const {
   return paths.obstacles.set().moves() ||
-         std::any_of(pinned_.begin(), pinned_.end(), [&](Index i) { return paths.from.col(i) != paths.to.col(i); });
+         std::any_of(fixed_.begin(), fixed_.end(), [&](Index i) { return paths.from.col(i) != paths.to.col(i); });
 }
 
 void ObstacleTruncation::record_crossed() {
   crossed_before_.clear();
   if (!regions_.any_crossed()) return;
-  for (std::size_t i = 0; i < surface_.pinned.size(); ++i) {
+  for (std::size_t i = 0; i < surface_.motions.size(); ++i) {
     crossed_before_.push_back(regions_.is_crossed(static_cast<Index>(i)) ? 1 : 0);
   }
 }
 
 std::vector<Index> ObstacleTruncation::leaving_pins(const ObstacleFrame& obstacles, const Points& positions) const {
   std::vector<Index> leaving;
-  for (const Index i : pinned_) {
+  for (const Index i : fixed_) {
     if (!regions_.is_at_rest(i) && positions.col(i).allFinite() && !regions_.allow(obstacles, i, positions.col(i)))
       leaving.push_back(i);
   }
@@ -206,14 +211,14 @@ bool ObstacleTruncation::can_continue(Index i, const StepPaths& paths, const Poi
          (left <= kMaxRemaining * length || regions_.planes_allow(paths.obstacles, i, paths.to.col(i)));
 }
 
-// Corners of crossed elements are listed even if they are pinned or were not clipped.
+// Corners of crossed elements are listed even if they are fixed or were not clipped.
 void ObstacleTruncation::list_infeasible(const std::vector<Index>& particles, const Outcomes& outcomes) {
   infeasible_.clear();
   for (std::size_t n = 0; n < particles.size(); ++n) {
     if (outcomes[n] == Outcome::infeasible) infeasible_.push_back(particles[n]);
   }
   if (!regions_.any_crossed()) return;
-  for (Index i = 0; i < static_cast<Index>(surface_.pinned.size()); ++i) {
+  for (Index i = 0; i < static_cast<Index>(surface_.motions.size()); ++i) {
     if (regions_.is_crossed(i)) infeasible_.push_back(i);
   }
   std::sort(infeasible_.begin(), infeasible_.end());
@@ -222,7 +227,7 @@ void ObstacleTruncation::list_infeasible(const std::vector<Index>& particles, co
 
 std::vector<Index> ObstacleTruncation::movable(std::vector<Index> particles, const StepPaths& paths) const {
   std::erase_if(particles, [&](Index i) {
-    return surface_.pinned[at(i)] != 0 || !paths.from.col(i).allFinite() || !paths.to.col(i).allFinite();
+    return is_fixed(surface_.motions, i) || !paths.from.col(i).allFinite() || !paths.to.col(i).allFinite();
   });
   return particles;
 }

@@ -13,6 +13,9 @@ class ObstacleTruncation {
   /// Keeps references to both.
   ObstacleTruncation(const CollisionSurface& surface, ObstacleSafeRegions& regions);
 
+  /// Reads again which particles of the surface are fixed.
+  void find_fixed();
+
   /// Sets `after` [m], 3 x n, to the targets of the paths, or to nearby admissible positions. Regions that stop a particle are
   /// renewed so that it can continue. Infeasible particles move with the obstacles; if that is not enough, the interval is
   /// subdivided.
@@ -35,10 +38,10 @@ class ObstacleTruncation {
   /// Whether obstacles or pins move. If none does, the start of a path is an admissible position.
   [[nodiscard]] bool is_kinematic(const StepPaths& paths) const;
 
-  /// Particles that are not pinned and whose paths are finite, ascending.
+  /// Particles that are not fixed and whose paths are finite, ascending.
   [[nodiscard]] std::vector<Index> all_movable(const StepPaths& paths) const;
 
-  [[nodiscard]] const std::vector<Index>& pinned() const { return pinned_; }  ///< ascending
+  [[nodiscard]] const std::vector<Index>& fixed() const { return fixed_; }  ///< ascending
 
  private:
   [[nodiscard]] std::vector<Index> movable(std::vector<Index> particles, const StepPaths& paths) const;
@@ -61,7 +64,7 @@ class ObstacleTruncation {
   const CollisionSurface& surface_;
   ObstacleSafeRegions& regions_;
   VertexTruncation truncation_;
-  std::vector<Index> pinned_;
+  std::vector<Index> fixed_;
   std::vector<char> crossed_before_;  ///< by particle: 1 if an element is crossed at the start of the path; empty if none is
   std::vector<Index> stopped_;
   std::vector<Index> infeasible_;

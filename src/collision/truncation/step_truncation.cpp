@@ -54,11 +54,18 @@ bool StepTruncation::can_collide() const { return implementation_->pairs.has_val
 
 bool StepTruncation::bodies_can_collide() const { return bodies_collide(implementation_->surface); }
 
+void StepTruncation::set_motions(ParticleMotions motions) {
+  implementation_->surface.motions = std::move(motions);
+  implementation_->regions.find_fixed();
+  implementation_->obstacle_truncation.find_fixed();
+  roll_back({});
+}
+
 void StepTruncation::begin_step(const ObstacleFrame& obstacles, const Points& before, const Points& after) {
   const StepPaths paths{obstacles, before, after};
   implementation_->regions.update(paths);
   implementation_->regions.permit_crossings(before);
-  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->obstacle_truncation.pinned(), paths);
+  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->obstacle_truncation.fixed(), paths);
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
@@ -123,7 +130,7 @@ void StepTruncation::Implementation::separate_pairs(const ObstacleFrame& obstacl
   };
   Outcomes outcomes = PairTruncation(obstacles, regions, *pairs, particles).clip(before, after);
   record_moved();
-  std::vector<Index> infeasible = pairs->passing_pins();
+  std::vector<Index> infeasible = pairs->passing_fixed();
   const bool path_checked = obstacle_truncation.check_pins(obstacles, particles, after, outcomes);
   if (!path_checked ||
       (obstacle_truncation.is_kinematic({obstacles, before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
@@ -136,8 +143,8 @@ void StepTruncation::Implementation::separate_pairs(const ObstacleFrame& obstacl
       ClippedSubstep clipped{PairTruncation(paths.obstacles, regions, *pairs, particles).clip(paths.from, x),
                              before_obstacles.path_checked};
       record_moved();
-      const std::vector<Index> pins = pairs->passing_pins();
-      infeasible.insert(infeasible.end(), pins.begin(), pins.end());
+      const std::vector<Index> fixed = pairs->passing_fixed();
+      infeasible.insert(infeasible.end(), fixed.begin(), fixed.end());
       clipped.path_checked =
           obstacle_truncation.check_pins(paths.obstacles, particles, x, clipped.outcomes) && clipped.path_checked;
       keep_infeasible(before_obstacles.outcomes, clipped.outcomes);

@@ -32,6 +32,10 @@ class StepTruncation {
   /// Whether elements of two bodies may touch.
   [[nodiscard]] bool bodies_can_collide() const;
 
+  /// Replaces the motions of all particles: pins began or ended, or particles fell asleep or woke. All else that is kept between
+  /// steps is discarded, permitted crossings too, so that the next step has the same results as with a new object.
+  void set_motions(ParticleMotions motions);
+
   // `obstacles` is the frame of the step.
 
   /// Begins a step from `before`, where nothing crosses, to `after`, the target at the end of the step [m], 3 x n: updates safe
@@ -60,7 +64,7 @@ class StepTruncation {
 
   /// Clips `after` so that no element crosses an obstacle or another element. A particle that would leave a safe region moves to a
   /// nearby admissible position. If surfaces close in on a particle, the interval is subdivided. A particle without an admissible
-  /// position moves with the obstacle and is counted as infeasible. Pinned particles and positions that are not finite do not
+  /// position moves with the obstacle and is counted as infeasible. Fixed particles and positions that are not finite do not
   /// change.
   ///
   /// While obstacles stop particles, `relax` may move all particles again; they are then clipped from where they are safe. The

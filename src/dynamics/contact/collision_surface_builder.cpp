@@ -34,10 +34,21 @@ CollisionSurface contact_surface(const SpringNetwork& network) {
     self.push_back(body.contact.self ? 1 : 0);
     others.push_back(body.contact.others ? 1 : 0);
   }
-  std::vector<char> pinned(particles);
-  for (Index i = 0; i < network.particle_count(); ++i) pinned[static_cast<std::size_t>(i)] = network.is_pinned(i) ? 1 : 0;
-  return make_collision_surface(std::move(elements), network.positions, body_of, particle_thickness(network), std::move(pinned),
-                                std::move(self), std::move(others));
+  return make_collision_surface(std::move(elements), network.positions, body_of, particle_thickness(network),
+                                particle_motions(network), std::move(self), std::move(others));
+}
+
+ParticleMotions particle_motions(const SpringNetwork& network) {
+  ParticleMotions motions;
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    motions.push_back(network.is_pinned(i) ? ParticleMotion::at_rest : ParticleMotion::free);
+  }
+  for (const Pin& pin : network.pins) {
+    for (const Index i : pin.particles) {
+      if (pin.moves() && !network.is_asleep(i)) motions[static_cast<std::size_t>(i)] = ParticleMotion::driven;
+    }
+  }
+  return motions;
 }
 
 }  // namespace sprung

@@ -51,6 +51,9 @@ class ContactProjection {
   /// truncate(); requires that the positions lie in their safe regions. Accumulated pushes are kept.
   void find_again(const ObstacleFrame& frame, const StepMotion& motion, const Points& positions);
 
+  /// See StepTruncation. The inverse masses of the network have to match.
+  void set_motions(ParticleMotions motions) { truncation_.set_motions(std::move(motions)); }
+
   /// See StepTruncation.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return truncation_.permitted_crossings(); }
   void roll_back(const PermittedCrossings& permitted) { truncation_.roll_back(permitted); }

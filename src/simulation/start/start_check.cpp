@@ -88,7 +88,7 @@ std::map<NumberPair, InObstacle> by_body_and_obstacle(const Intersections& found
 /// For each body and obstacle that intersect: the first pinned particle of the body that is inside the obstacle.
 std::map<NumberPair, Index> pins_inside(const ObstacleFrame& obstacles, const SpringNetwork& network, CollisionSurface surface,
                                         const Points& positions) {
-  std::ranges::fill(surface.pinned, char{0});
+  std::ranges::fill(surface.motions, ParticleMotion::free);
   std::map<NumberPair, Index> pins;
   for (const auto& [particle, obstacle, depth] : find_intersections(obstacles, surface, positions).inside) {
     const auto body = static_cast<Index>(&network.body_of(particle) - network.bodies.data());

@@ -35,12 +35,13 @@ Vector3 farthest(const std::vector<DivisionPlanes::Bound>& bounds, Index particl
 struct Step {
   NearbySides sides;
   Points targets;
-  std::vector<char> pinned;
+  ParticleMotions motions;
 };
 
 Step random_step(Random& random) {
-  Step step{.sides = random_nearby_sides(3, random), .targets = Points(3, 6), .pinned = std::vector<char>(6, 0)};
-  for (char& pin : step.pinned) pin = random.between(0.0, 1.0) < 0.4 ? 1 : 0;
+  Step step{.sides = random_nearby_sides(3, random), .targets = Points(3, 6), .motions = ParticleMotions(6)};
+  for (ParticleMotion& motion : step.motions)
+    motion = random.between(0.0, 1.0) < 0.4 ? ParticleMotion::driven : ParticleMotion::free;
   step.targets = random_ends(step.sides.before, random.between(0.0, 1.0), random.between(0.0, 0.5), random);
   return step;
 }
@@ -52,7 +53,7 @@ TEST(DivisionPlanes, SidesDoNotCrossIfTheirParticlesEndWithinTheirBounds) {
   int crossed = 0;
   for (int n = 0; n < 4000; ++n) {
     const Step step = random_step(random);
-    DivisionPlanes planes(step.sides.before, step.targets, step.pinned, no_displacements, kKept);
+    DivisionPlanes planes(step.sides.before, step.targets, step.motions, no_displacements, kKept);
     std::vector<ContactStencil> pairs{step.sides.pair};
     while (planes.constrain(pairs)) {
     }
@@ -78,14 +79,15 @@ TEST(DivisionPlanes, SidesDoNotCrossIfTheirParticlesEndWithinTheirBounds) {
 struct Stack {
   static constexpr int kLayers = 6;
 
-  explicit Stack(Random& random) : before(3, 3 * kLayers), targets(3, 3 * kLayers), pinned(3 * kLayers, 0) {
+  explicit Stack(Random& random) : before(3, 3 * kLayers), targets(3, 3 * kLayers), motions(3 * kLayers) {
     const double gap = std::pow(10.0, random.between(-7.0, -2.0));
     for (int layer = 0; layer < kLayers; ++layer) {
       auto own = before.middleCols<3>(3 * layer);
       for (int k = 0; k < 3; ++k) own.col(k) << random.between(-1.0, 1.0), layer * gap, random.between(-1.0, 1.0);
       const bool moves = layer == 0 || layer == kLayers - 1;
       targets.middleCols<3>(3 * layer) = moves ? moved_in_plane(own, random) : random_ends(own, 0.3, 0.3, random);
-      for (int k = 0; k < 2; ++k) pinned[static_cast<std::size_t>(3 * layer + k)] = moves ? 1 : 0;
+      for (int k = 0; k < 2; ++k)
+        motions[static_cast<std::size_t>(3 * layer + k)] = moves ? ParticleMotion::driven : ParticleMotion::free;
     }
   }
 
@@ -106,7 +108,7 @@ struct Stack {
 
   Points before;
   Points targets;
-  std::vector<char> pinned;
+  ParticleMotions motions;
 
  private:
   static Points moved_in_plane(const Points& x, Random& random) {
@@ -123,7 +125,7 @@ TEST(DivisionPlanes, RelaxationSeparatesMostStacksThatPinsDragTogether) {
   int unsolved = 0;
   for (int n = 0; n < 2000; ++n) {
     const Stack stack(random);
-    DivisionPlanes planes(stack.before, stack.targets, stack.pinned, no_displacements, kKept);
+    DivisionPlanes planes(stack.before, stack.targets, stack.motions, no_displacements, kKept);
     std::vector<ContactStencil> pairs = stack.pairs();
     while (planes.constrain(pairs)) {
     }

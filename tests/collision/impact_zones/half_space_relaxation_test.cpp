@@ -23,13 +23,13 @@ TEST(HalfSpaceRelaxation, SidesThatAPlaneSeparatesDoNotCross) {
   Random random(1);
   int kept = 0;
   int crossed = 0;
-  const std::vector<char> pinned(6, 0);
+  const ParticleMotions motions(6);
   for (int n = 0; n < 20000; ++n) {
     const NearbySides sides = random_nearby_sides(3, random);
     const Points ends = random_ends(sides.before, random.between(0.0, 0.5), std::pow(10.0, random.between(-5.0, 0.3)), random);
     const bool crosses = cross_in_between(sides.before, ends);
     crossed += crosses ? 1 : 0;
-    if (HalfSpaceRelaxation(sides.before, pinned, kTolerance).passes(sides.pair, ends)) continue;
+    if (HalfSpaceRelaxation(sides.before, motions, kTolerance).passes(sides.pair, ends)) continue;
     ++kept;
     ASSERT_FALSE(crosses) << n;
   }
@@ -43,12 +43,12 @@ TEST(HalfSpaceRelaxation, SidesThatAPlaneSeparatesDoNotCross) {
 TEST(HalfSpaceRelaxation, SidesThatRotateTogetherDoNotPass) {
   Random random(2);
   for (const int side : {2, 3}) {
-    const std::vector<char> pinned(static_cast<std::size_t>(2 * side), 0);
+    const ParticleMotions motions(static_cast<std::size_t>(2 * side));
     for (int n = 0; n < 1000; ++n) {
       const NearbySides sides = random_nearby_sides(side, random);
       const double gap = heights_at(sides.pair, sides.before).gap();
       const Points ends = random_ends(sides.before, std::min(0.5, std::sqrt(gap)), 0.0, random);
-      EXPECT_FALSE(HalfSpaceRelaxation(sides.before, pinned, kTolerance).passes(sides.pair, ends)) << side << ", " << n;
+      EXPECT_FALSE(HalfSpaceRelaxation(sides.before, motions, kTolerance).passes(sides.pair, ends)) << side << ", " << n;
     }
   }
 }
@@ -61,11 +61,12 @@ TEST(HalfSpaceRelaxation, AParticleBetweenPinsMovesToWhereTheyLeaveRoom) {
       1.0, -1.0, -1.0, 1.0, -1.0, -1.0, 0.0;
   Points ends = before;
   ends.row(1).head(3).setConstant(-0.3);
-  const std::vector<char> pinned{1, 1, 1, 1, 1, 1, 0};
+  ParticleMotions motions(7, ParticleMotion::driven);
+  motions.back() = ParticleMotion::free;
   std::vector<ContactStencil> pairs(2);
   pairs[0] = {.particles = {6, 0, 1, 2}, .first_count = 1, .second_count = 3, .normal = -Vector3::UnitY()};
   pairs[1] = {.particles = {6, 3, 4, 5}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()};
-  const HalfSpaceRelaxation relaxation(before, pinned, kTolerance);
+  const HalfSpaceRelaxation relaxation(before, motions, kTolerance);
   ASSERT_TRUE(relaxation.passes(pairs[0], ends));
   EXPECT_EQ(relaxation.move_apart(pairs, ends), std::vector<Index>{6});
   for (const ContactStencil& pair : pairs) EXPECT_FALSE(relaxation.passes(pair, ends));
@@ -80,10 +81,10 @@ TEST(HalfSpaceRelaxation, PinsAreNotMoved) {
       0.0, 1.0, -1.0, -1.0;
   Points ends = before;
   ends(1, 0) = -0.1;
-  const std::vector<char> pinned(4, 1);
+  const ParticleMotions motions(4, ParticleMotion::driven);
   const std::vector<ContactStencil> pairs{
       {.particles = {0, 1, 2, 3}, .first_count = 1, .second_count = 3, .normal = Vector3::UnitY()}};
-  const HalfSpaceRelaxation relaxation(before, pinned, kTolerance);
+  const HalfSpaceRelaxation relaxation(before, motions, kTolerance);
   const Points requested = ends;
   EXPECT_TRUE(relaxation.move_apart(pairs, ends).empty());
   EXPECT_EQ(ends, requested);

@@ -236,7 +236,7 @@ TEST(PairSeparation, ACrumpledClothInFlightIsNotConstrained) {
 
 TEST(PairSeparation, PinnedParticlesReachTheirTargets) {
   SelfNetwork network = cloth_of(6);
-  network.pinned[0] = 1;
+  network.motions[0] = ParticleMotion::driven;
   const CollisionSurface surface = network.surface(kThickness);
   PairSeparation separation(surface, network.positions, kMargin);
   const auto fold = [&](int step, const Points& x) {
@@ -258,7 +258,8 @@ TEST(PairSeparation, PinnedParticlesReachTheirTargets) {
 
 /// Pins two corners of the cloth and its middle.
 void pin_three(SelfNetwork& network) {
-  for (const Index i : {Index{0}, network.count() / 2, network.count() - 1}) network.pinned[static_cast<std::size_t>(i)] = 1;
+  for (const Index i : {Index{0}, network.count() / 2, network.count() - 1})
+    network.motions[static_cast<std::size_t>(i)] = ParticleMotion::driven;
 }
 
 /// Moves each pin from its position p to `motion(p)` in each step, and the other particles by `others`.
@@ -268,7 +269,7 @@ std::function<Points(int, const Points&)> with_pins_moved(const std::function<Po
   return [&network, others, motion](int step, const Points& x) {
     Points targets = others(step, x);
     for (Index i = 0; i < network.count(); ++i) {
-      if (network.pinned[static_cast<std::size_t>(i)] != 0) targets.col(i) = motion(Vector3(x.col(i)));
+      if (is_fixed(network.motions, i)) targets.col(i) = motion(Vector3(x.col(i)));
     }
     return targets;
   };
@@ -316,7 +317,7 @@ TEST(PairSeparation, ParticlesThatPinsDragThroughEachOtherAreReported) {
       ++crossed;
       Index reported = 0;
       for (Index i = 0; i < network.count(); ++i) {
-        reported += network.pinned[static_cast<std::size_t>(i)] == 0 && separation.passes(i) ? 1 : 0;
+        reported += !is_fixed(network.motions, i) && separation.passes(i) ? 1 : 0;
       }
       EXPECT_GT(reported, 0) << "seed " << seed << ", step " << step;
     }
@@ -329,8 +330,8 @@ SelfNetwork two_pinned_squares() {
   SelfNetwork network;
   network.add_cloth(1, {0.0, 0.0, 0.0}, Vector3::UnitX(), Vector3::UnitZ());
   network.add_cloth(1, {0.2, 1e-3, 0.2}, Vector3::UnitX(), Vector3::UnitZ());
-  network.pinned.assign(network.pinned.size(), 1);
-  network.pinned[1] = 0;
+  network.motions.assign(network.motions.size(), ParticleMotion::driven);
+  network.motions[1] = ParticleMotion::free;
   return network;
 }
 
@@ -343,7 +344,7 @@ TEST(PairSeparation, PinsThatRotateTogetherAreNotReported) {
   const Points targets = Eigen::AngleAxisd(1.0, Vector3(1.0, 1.0, 1.0).normalized()).toRotationMatrix() * network.positions;
   separation.begin_step(network.positions, targets, contacts);
   separation.constrain(network.positions, targets);
-  EXPECT_TRUE(separation.passing_pins().empty());
+  EXPECT_TRUE(separation.passing_fixed().empty());
 }
 
 TEST(PairSeparation, PinsThatPassThroughEachOtherAreReported) {
@@ -355,7 +356,24 @@ TEST(PairSeparation, PinsThatPassThroughEachOtherAreReported) {
   targets.row(1).tail(4).array() -= 0.2;
   separation.begin_step(network.positions, targets, contacts);
   separation.constrain(network.positions, targets);
-  EXPECT_FALSE(separation.passing_pins().empty());
+  EXPECT_FALSE(separation.passing_fixed().empty());
+}
+
+TEST(PairSeparation, ElementsAtRestThatPinsPassThroughAreReported) {
+  SelfNetwork network = two_pinned_squares();
+  Points targets = network.positions;
+  targets.row(1).tail(4).array() -= 0.2;
+  const auto reported = [&](ParticleMotion lower) {
+    std::fill_n(network.motions.begin(), 4, lower);
+    const CollisionSurface surface = network.surface(0.0);
+    PairSeparation separation(surface, network.positions, kMargin);
+    std::vector<Contact> contacts;
+    separation.begin_step(network.positions, targets, contacts);
+    separation.constrain(network.positions, targets);
+    return separation.passing_fixed();
+  };
+  EXPECT_FALSE(reported(ParticleMotion::at_rest).empty());
+  EXPECT_TRUE(reported(ParticleMotion::driven).empty()) << "pins drive both as a whole";
 }
 
 TEST(PairSeparation, ScaledScenesGiveTheSameBits) {

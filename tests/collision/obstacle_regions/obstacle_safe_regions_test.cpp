@@ -20,7 +20,7 @@ TEST(ObstacleSafeRegions, AllowNoPositionOutsideOfTheSearchedBox) {
   ball.rest_pose.translation() = Vector3(10.0, 0.0, 0.0);
   const ObstacleSet obstacles({ball});
   const ObstacleFrame frame(obstacles, 0.0, 0.01);
-  const CollisionSurface surface = test::particle_surface({0});
+  const CollisionSurface surface = test::particle_surface(ParticleMotions(1));
   const Points here = Points::Zero(3, 1);
   ObstacleSafeRegions regions(obstacles, surface, here, 0.01);
   regions.update({frame, here, here});

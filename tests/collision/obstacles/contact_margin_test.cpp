@@ -17,7 +17,7 @@ std::size_t contacts(const std::vector<double>& heights, const std::vector<doubl
                                 .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
                                 .material = {.thickness = kGap}}});
   const ObstacleFrame frame(obstacles, 0.0, 0.01);
-  StepTruncation truncation = test::single_particles(obstacles, std::vector<char>(heights.size(), 0), 0.5 * kGap);
+  StepTruncation truncation = test::single_particles(obstacles, ParticleMotions(heights.size()), 0.5 * kGap);
   Points after = Points::Zero(3, static_cast<Index>(heights.size()));
   Points before = after;
   for (std::size_t i = 0; i < heights.size(); ++i) {
@@ -61,7 +61,7 @@ TEST(RenewedContacts, AreFoundInThePatchOfATruncatedParticle) {
                                 .geometry = HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = 0.0},
                                 .material = {.thickness = kGap}}});
   const ObstacleFrame frame(obstacles, 0.0, 0.01);
-  StepTruncation truncation = test::single_particles(obstacles, std::vector<char>(kParticles, 0), 0.5 * kGap);
+  StepTruncation truncation = test::single_particles(obstacles, ParticleMotions(kParticles), 0.5 * kGap);
   Points before = Points::Zero(3, kParticles);
   before.row(1).setConstant(kGap);
   Points after = before;

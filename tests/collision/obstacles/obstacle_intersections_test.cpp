@@ -53,7 +53,7 @@ struct Network {
   [[nodiscard]] CollisionSurface surface(char self = 1, char others = 1) const {
     const auto bodies = static_cast<std::size_t>(body_of.back()) + 1;
     return make_collision_surface(elements, positions(), body_of, Scalars::Zero(static_cast<Eigen::Index>(particles.size())),
-                                  std::vector<char>(particles.size(), 0), std::vector<char>(bodies, self),
+                                  ParticleMotions(particles.size()), std::vector<char>(bodies, self),
                                   std::vector<char>(bodies, others));
   }
 };
@@ -183,7 +183,9 @@ TEST(Intersections, ElementsPinnedInAnObstacleAreNotReported) {
   network.add(0, {Vector3(-2, 0, 0), Vector3(2, 0, 0)});       // wholly pinned
   network.add(0, {Vector3(0, 0, 0.3)});
   CollisionSurface surface = network.surface();
-  surface.pinned = {1, 0, 1, 0, 1, 0, 1, 1, 1};
+  constexpr auto kFree = ParticleMotion::free;
+  constexpr auto kAtRest = ParticleMotion::at_rest;
+  surface.motions = {kAtRest, kFree, kAtRest, kFree, kAtRest, kFree, kAtRest, kAtRest, kAtRest};
   const Intersections found = find_intersections(frame, surface, network.positions());
   EXPECT_THAT(found.inside, IsEmpty());
   EXPECT_THAT(crossing(found, surface), ElementsAre(4));

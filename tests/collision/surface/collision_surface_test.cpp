@@ -27,7 +27,7 @@ struct Sheet {
   [[nodiscard]] CollisionSurface surface() const {
     const auto count = static_cast<std::size_t>(positions.cols());
     return make_collision_surface(elements, positions, std::vector<Index>(count, 0), Scalars::Zero(positions.cols()),
-                                  std::vector<char>(count, 0), {0}, {1});
+                                  ParticleMotions(count), {0}, {1});
   }
 
   Points positions;
@@ -101,7 +101,7 @@ TEST(CollisionSurface, ParticlesOfAPatchAreItsElementsAscendingAndSlotsFindThem)
 TEST(CollisionSurface, ParticlesWithoutAnElementBecomeOneWithinTheirBody) {
   const Points positions = (Points(3, 6) << 0, 1, 0, 5, 7, 8, 0, 0, 1, 5, 7, 7, 0, 0, 0, 5, 7, 7).finished();
   const CollisionSurface surface = make_collision_surface({{{0, 1, 2}, 3, 0}, {{4, 5, kNone}, 2, 1}}, positions, {0, 0, 0, 0, 1, 1},
-                                                          Scalars::Constant(6, 0.01), {0, 0, 0, 0, 0, 1}, {1, 0}, {0, 1});
+                                                          Scalars::Constant(6, 0.01), ParticleMotions(6), {1, 0}, {0, 1});
   ASSERT_EQ(surface.elements.size(), 3U);
   EXPECT_EQ(surface.elements[1].particles[0], 3);
   EXPECT_EQ(surface.elements[1].corners, 1);
@@ -113,7 +113,6 @@ TEST(CollisionSurface, ParticlesWithoutAnElementBecomeOneWithinTheirBody) {
   // Edges of 1, 1 and sqrt(2) m; a segment of 1 m.
   EXPECT_DOUBLE_EQ(surface.element_size[0], (2.0 + std::sqrt(2.0)) / 3.0);
   EXPECT_DOUBLE_EQ(surface.element_size[1], 1.0);
-  EXPECT_THAT(surface.pinned, ElementsAre(0, 0, 0, 0, 0, 1));
   EXPECT_THAT(surface.self, ElementsAre(1, 0));
   EXPECT_THAT(surface.others, ElementsAre(0, 1));
 }
@@ -121,7 +120,7 @@ TEST(CollisionSurface, ParticlesWithoutAnElementBecomeOneWithinTheirBody) {
 TEST(CollisionSurface, ParticlesAtOnePlaceAreCutToo) {
   const Index count = 1000;
   const CollisionSurface surface = make_collision_surface({}, Points::Ones(3, count), std::vector<Index>(1000, 0),
-                                                          Scalars::Zero(count), std::vector<char>(1000, 0), {0}, {1});
+                                                          Scalars::Zero(count), ParticleMotions(1000), {0}, {1});
   EXPECT_EQ(surface.patches.size(), 32U);
   EXPECT_EQ(surface.element_size[0], 0.0);
   const CollisionSurface nothing = make_collision_surface({}, Points(3, 0), {}, {}, {}, {}, {});

@@ -108,7 +108,7 @@ void expect_no_element_crosses(const TriangleMesh& mesh, bool closed, int steps)
   const ObstacleFrame frame(obstacles, 0.0, 0.0);
   StepTruncation truncation(obstacles,
                             make_collision_surface(network.elements, network.positions, network.body_of, Scalars::Zero(count),
-                                                   network.pinned, alone, alone),
+                                                   network.motions, alone, alone),
                             network.positions, 0.0);
   auto crossings = [&, everything = Points(3, count + mesh.vertices.cols())](const Points& positions) mutable {
     everything << positions, mesh.vertices;
@@ -231,7 +231,9 @@ TEST(StepTruncation, PinnedAndFreeParticlesKeepEveryBit) {
   after(1, 0) = -1.0;
   after(1, 1) = 0.1 / 3.0;
   const Points wanted = after;
-  EXPECT_EQ(test::single_particles(obstacles, std::vector<char>{1, 0}).truncate(frame, before, after).truncated, 0);
+  EXPECT_EQ(
+      test::single_particles(obstacles, {ParticleMotion::driven, ParticleMotion::free}).truncate(frame, before, after).truncated,
+      0);
   EXPECT_EQ(after, wanted);
 }
 
@@ -299,10 +301,10 @@ TEST(StepTruncation, ReportsAnElementThatAPinPullsThroughAnObstacleInTheSameStep
   const ObstacleSet obstacles({ball});
   test::SelfNetwork segment;
   segment.add_rope(1, Vector3::Zero(), Vector3(0.6, 0.0, 0.0));
-  segment.pinned[0] = 1;
+  segment.motions[0] = ParticleMotion::driven;
   StepTruncation truncation(
       obstacles,
-      make_collision_surface(segment.elements, segment.positions, segment.body_of, Scalars::Zero(2), segment.pinned, {0}, {0}),
+      make_collision_surface(segment.elements, segment.positions, segment.body_of, Scalars::Zero(2), segment.motions, {0}, {0}),
       segment.positions, 0.0);
   const auto infeasible_until = [&](double time) {
     const ObstacleFrame frame(obstacles, time - 1.0, time);

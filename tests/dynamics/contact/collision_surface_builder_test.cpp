@@ -1,6 +1,7 @@
 #include "dynamics/contact/collision_surface_builder.h"
 
 #include "dynamics/networks.h"
+#include "network/model/sleeping_particles.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,10 +49,24 @@ TEST(ContactSurface, ClothsGiveTrianglesRopesSegmentsAndSolidsTheirSurfaceAndIns
   }
   EXPECT_EQ(surface.thickness[11], 0.01);
   EXPECT_EQ(surface.thickness[12], 0.02);
-  EXPECT_EQ(surface.pinned[0] + surface.pinned[12], 2);
-  EXPECT_EQ(std::count(surface.pinned.begin(), surface.pinned.end(), 1), 2);
+  EXPECT_TRUE(is_fixed(surface.motions, 0) && is_fixed(surface.motions, 12));
+  EXPECT_EQ(std::ranges::count(surface.motions, ParticleMotion::free), network.particle_count() - 2);
   EXPECT_THAT(surface.self, ElementsAre(1, 0, 0, 0));
   EXPECT_THAT(surface.others, ElementsAre(1, 0, 1, 1));
+}
+
+TEST(ParticleMotions, PinsThatMoveDriveWhatDoesNotSleep) {
+  NetworkBuilder builder;
+  for (int i = 0; i < 4; ++i) builder.add_particle(Vector3(i, 0.0, 0.0), 1.0);
+  builder.pin(1, {.keyframes = {}, .spin = Vector3::UnitY()});
+  builder.pin(2);
+  SpringNetwork network = builder.build();
+  constexpr auto kFree = ParticleMotion::free;
+  constexpr auto kDriven = ParticleMotion::driven;
+  constexpr auto kAtRest = ParticleMotion::at_rest;
+  EXPECT_THAT(particle_motions(network), ElementsAre(kFree, kDriven, kAtRest, kFree));
+  set_asleep({0, 0, 0, 1}, network);
+  EXPECT_THAT(particle_motions(network), ElementsAre(kFree, kDriven, kAtRest, kAtRest));
 }
 
 }  // namespace
