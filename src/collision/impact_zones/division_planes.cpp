@@ -15,9 +15,6 @@ namespace {
 // for pins.
 constexpr double kMaxPinError = 0.25;
 
-// Rounds of relaxation that begin with the groups' motions, and as many again that begin at rest.
-constexpr int kRoundsEach = 3;
-
 constexpr Index kPairsPerTask = 2048;
 
 std::vector<DivisionPlanes::Bound> sorted(const std::vector<DivisionPlanes::Bound>& bounds, Index particles) {
@@ -38,17 +35,15 @@ DivisionPlanes::DivisionPlanes(const Points& before, const Points& targets, cons
       motions_(motions),
       groups_(before, targets, motions, displacements),
       ends_(targets),
-      tolerance_{.thickness_kept = kept, .clearance = kClearance * before.cwiseAbs().maxCoeff()},
-      relaxation_(before, motions, tolerance_),
-      is_aside_(static_cast<std::size_t>(before.cols()), 0) {}
+      tolerance_{.thickness_kept = kept, .clearance = kClearance * before.cwiseAbs().maxCoeff()} {}
 
 bool DivisionPlanes::constrain(std::vector<ContactStencil>& pairs) {
   bool changed = false;
   passing_.clear();
-  for (const Index k : find_passing(pairs, [&](const ContactStencil& pair) { return passes(pair); })) {
+  for (const Index k : find_passing(pairs)) {
     const ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
     changed = groups_.unite({pair.particles.data(), static_cast<std::size_t>(pair.count())}) || changed;
-    note_passing(pair);
+    passing_.insert(passing_.end(), pair.particles.begin(), pair.particles.begin() + pair.count());
   }
   if (!changed) return false;
   groups_.find_motions();
@@ -66,8 +61,7 @@ void DivisionPlanes::renew_normals(std::vector<ContactStencil>& pairs) const {
   });
 }
 
-template <class Passes>
-std::vector<Index> DivisionPlanes::find_passing(std::vector<ContactStencil>& pairs, const Passes& passes) const {
+std::vector<Index> DivisionPlanes::find_passing(std::vector<ContactStencil>& pairs) const {
   const auto count = static_cast<Index>(pairs.size());
   std::vector<std::vector<Index>> batches(static_cast<std::size_t>((count + kPairsPerTask - 1) / kPairsPerTask));
   parallel_chunks(count, kPairsPerTask, [&](Index begin, Index end) {
@@ -95,44 +89,6 @@ bool DivisionPlanes::is_fixed_rigidly(const ContactStencil& pair) const {
   return motion && std::ranges::all_of(pins, [&](const PinDisplacement& pin) {
            return (*motion * pin.from - pin.to).norm() <= kMaxPinError * gap;
          });
-}
-
-void DivisionPlanes::note_passing(const ContactStencil& pair) {
-  passing_.insert(passing_.end(), pair.particles.begin(), pair.particles.begin() + pair.count());
-}
-
-bool DivisionPlanes::relax(std::vector<ContactStencil>& pairs) {
-  relaxed_ = true;
-  passing_.clear();
-  const auto passes = [&](const ContactStencil& pair) { return relaxation_.passes(pair, ends_); };
-  for (const Index k : find_passing(pairs, passes)) note_passing(pairs[static_cast<std::size_t>(k)]);
-  if (passing_.empty() || ++rounds_ > 2 * kRoundsEach) return false;
-  if (rounds_ == kRoundsEach + 1) reset_passing_groups();
-  for (const Index i : relaxation_.move_apart(pairs, ends_)) {
-    if (is_constrained(i)) continue;
-    is_aside_[static_cast<std::size_t>(i)] = 1;
-    aside_.push_back(i);
-  }
-  return true;
-}
-
-/// Groups with sides that pass each other start again at rest: the motion of some of their pins may be no good start for the
-/// others.
-void DivisionPlanes::reset_passing_groups() {
-  std::vector<Index> passing_groups;
-  for (const Index i : passing_) {
-    if (groups_.contains(i)) passing_groups.push_back(groups_.group(i));
-  }
-  std::sort(passing_groups.begin(), passing_groups.end());
-  for (const Index i : groups_.particles()) {
-    if (std::binary_search(passing_groups.begin(), passing_groups.end(), groups_.group(i))) ends_.col(i) = before_.col(i);
-  }
-}
-
-std::vector<Index> DivisionPlanes::constrained() const {
-  std::vector<Index> all = groups_.particles();
-  all.insert(all.end(), aside_.begin(), aside_.end());
-  return all;
 }
 
 std::vector<Index> DivisionPlanes::anchored() const {
@@ -191,21 +147,12 @@ void DivisionPlanes::limit_groups(const std::vector<ContactStencil>& pairs) {
 std::vector<DivisionPlanes::Bound> DivisionPlanes::bounds(const std::vector<ContactStencil>& pairs) const {
   std::vector<Bound> found;
   for (const ContactStencil& pair : pairs) {
-    if (!pair.any_of([&](Index i) { return is_constrained(i); })) continue;
+    if (!pair.any_of([&](Index i) { return groups_.contains(i); })) continue;
     const double begun = heights_at(pair, before_).gap();
     if (!(begun > 0.0)) continue;
-    if (relaxed_) {
-      append_bounds(pair, *relaxation_.plane(pair, ends_), found);
-    } else {
-      append_bounds(pair, groups_.moved(group_of(pair, begun), pair.normal), found);
-    }
+    append_bounds(pair, groups_.moved(group_of(pair, begun), pair.normal), found);
   }
   return sorted(found, static_cast<Index>(before_.cols()));
-}
-
-void DivisionPlanes::append_bounds(const ContactStencil& pair, const RotatingPlane& plane, std::vector<Bound>& found) const {
-  append_bounds(pair, plane.end, Vector3::Zero(), found);
-  if (plane.end != plane.begin) append_bounds(pair, plane.begin, plane.end, found);
 }
 
 void DivisionPlanes::append_bounds(const ContactStencil& pair, const MovedPlane& plane, std::vector<Bound>& found) const {
@@ -238,7 +185,7 @@ void DivisionPlanes::append_bounds(const ContactStencil& pair, const Vector3& af
   const double below = std::max(end.second, middle - room);
   for (int k = 0; k < pair.count(); ++k) {
     const Index i = pair.particles[static_cast<std::size_t>(k)];
-    if (!is_constrained(i)) continue;
+    if (!groups_.contains(i)) continue;
     found.push_back(k < pair.first_count ? Bound{i, {normal, above - extra(i)}} : Bound{i, {-normal, extra(i) - below}});
   }
 }

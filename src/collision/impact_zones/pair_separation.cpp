@@ -66,10 +66,7 @@ const std::vector<Index>& PairSeparation::constrain(const Points& before, const 
   DivisionPlanes planes(before, targets, self.surface.motions, displacements, kKeptFraction * self.surface.thickness.minCoeff());
   self.list.follow(before, targets);
   if (self.rotated) planes.renew_normals(self.list.pairs());
-  // constrain() returns true a finite number of times, because groups only grow, gain pins and become locked; relax() at most six
-  // times.
   while (planes.constrain(self.list.pairs())) self.list.follow(before, planes.ends());
-  while (!planes.passing().empty() && planes.relax(self.list.pairs())) self.list.follow(before, planes.ends());
   self.rotated = planes.rotates();
   self.ends = planes.ends();
   self.constrained = planes.constrained();
