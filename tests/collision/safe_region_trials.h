@@ -1,7 +1,7 @@
 // Random elements near meshes, random displacements within their safe regions, and exact crossing tests over all triangles.
 #pragma once
 
-#include "collision/mesh_bvh/segment_triangle_crossing.h"
+#include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/safe_regions/safe_region.h"
 #include "collision/safe_regions/triangle_separating_plane.h"
 #include "collision/sample_meshes.h"

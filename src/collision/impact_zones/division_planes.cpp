@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "collision/core/contact_constants.h"
-#include "collision/impact_zones/pin_rigid_fit.h"
+#include "collision/impact_zones/group_motion.h"
 
 #include <algorithm>
 #include <numeric>

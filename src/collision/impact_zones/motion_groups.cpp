@@ -1,6 +1,6 @@
 #include "collision/impact_zones/motion_groups.h"
 
-#include "collision/impact_zones/pin_rigid_fit.h"
+#include "collision/impact_zones/group_motion.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // Harmon et al. 2008).
 #pragma once
 
-#include "collision/impact_zones/moved_plane.h"
+#include "collision/impact_zones/group_motion.h"
 #include "collision/obstacle_regions/kinematic_anchor.h"
 #include "collision/surface/collision_surface.h"
 

@@ -1,8 +1,7 @@
 #include "collision/mesh_bvh/mesh_bvh.h"
 
 #include "base/parallel.h"
-#include "collision/mesh_bvh/sah_splitter.h"
-#include "collision/mesh_bvh/wide_bvh_collapse.h"
+#include "collision/mesh_bvh/mesh_bvh_build.h"
 
 #include <algorithm>
 #include <cmath>

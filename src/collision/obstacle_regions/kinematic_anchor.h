@@ -1,7 +1,7 @@
 // Particles that obstacles constrain, and the motion that a group of them has in common.
 #pragma once
 
-#include "collision/shapes/moved_triangle.h"
+#include "collision/shapes/obstacle_shape.h"
 
 #include <optional>
 #include <span>

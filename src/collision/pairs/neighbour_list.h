@@ -4,7 +4,7 @@
 #include "collision/element_bvh/element_bvh.h"
 #include "collision/pairs/pair_builder.h"
 #include "collision/pairs/proximity_search.h"
-#include "collision/surface/feature_edges.h"
+#include "collision/surface/surface_topology.h"
 
 #include <vector>
 

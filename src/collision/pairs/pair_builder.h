@@ -2,13 +2,21 @@
 #pragma once
 
 #include "collision/element_bvh/element_pair_filter.h"
-#include "collision/element_bvh/neighbour_list_state.h"
+#include "collision/element_bvh/vertex_bounds.h"
 #include "collision/pairs/contact_stencil.h"
 #include "collision/surface/surface_topology.h"
 
 #include <vector>
 
 namespace sprung {
+
+/// Particles at `positions` [m], 3 x n, and the spheres that bound them for `horizon` [steps] from now.
+struct NeighbourListState {
+  const Points& positions;
+  const VertexBounds& spheres;
+  double horizon = 0.0;
+  const std::vector<char>& marked;  ///< by particle: only pairs with a marked particle (not 0) are searched
+};
 
 /// Builds the stencils of a neighbour list.
 class PairBuilder {

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "collision/core/contact_constants.h"
-#include "collision/element_bvh/vertex_face_filter.h"
+#include "collision/element_bvh/feature_filters.h"
 
 #include <algorithm>
 

@@ -3,10 +3,10 @@
 // Its result serves contact response, which needs one contact where surfaces touch. Non-penetration does not depend on it.
 #pragma once
 
-#include "collision/element_bvh/edge_edge_filter.h"
 #include "collision/element_bvh/element_bvh.h"
-#include "collision/pairs/contact_candidate.h"
-#include "collision/surface/feature_edges.h"
+#include "collision/element_bvh/feature_filters.h"
+#include "collision/pairs/element_contacts.h"
+#include "collision/surface/surface_topology.h"
 
 #include <vector>
 

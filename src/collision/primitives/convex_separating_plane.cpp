@@ -1,8 +1,6 @@
 #include "collision/primitives/convex_separating_plane.h"
 
-#include "collision/primitives/convex_line_search.h"
 #include "collision/primitives/primitive_distance.h"
-#include "collision/primitives/support_point.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +8,58 @@
 #include <vector>
 
 namespace sprung {
-
 namespace {
+
+/// A point of an edge.
+struct EdgeSample {
+  double along = 0.0;     ///< from the begin of the edge [m]
+  double distance = 0.0;  ///< from the shape [m]
+  double slope = 0.0;     ///< of the distance along the edge
+};
+
+/// The intersection of the tangents of two samples. The distance is convex, so it is nowhere smaller between them.
+EdgeSample crossing_of_tangents(const EdgeSample& low, const EdgeSample& high) {
+  const double width = high.along - low.along;
+  const double ahead = (high.distance - low.distance - high.slope * width) / (low.slope - high.slope);
+  return {low.along + ahead, low.distance + low.slope * ahead, 0.0};
+}
+
+/// If the closest point of the shape is the same along the edge, the distance is a hyperbola and this function is linear.
+double steepness(double slope) { return slope / std::sqrt(std::max((1.0 - slope) * (1.0 + slope), 1e-30)); }
+
+double zero_of_steepness(const EdgeSample& low, const EdgeSample& high) {
+  const double falls = steepness(low.slope);
+  return low.along + (high.along - low.along) * falls / (falls - steepness(high.slope));
+}
+
+/// A bracket of the minimum of the distance along an edge: it decreases at the begin and increases at the end.
+class ConvexLineSearch {
+ public:
+  ConvexLineSearch(const EdgeSample& low, const EdgeSample& high) : low_(low), high_(high), width_(high.along - low.along) {}
+
+  /// The position of the next sample [m]. Three rules alternate: the minimum for a single closest point, the intersection of the
+  /// tangents, and bisection if the first two did not halve the bracket.
+  double next() {
+    const int rule = steps_++ % 3;
+    const double width = high_.along - low_.along;
+    const double at = rule == 1 ? crossing_of_tangents(low_, high_).along : zero_of_steepness(low_, high_);
+    const bool slow = rule == 2 && width > 0.5 * width_;
+    if (rule == 2) width_ = width;
+    return slow || !contains(at) ? low_.along + 0.5 * width : at;
+  }
+
+  /// Whether the position [m] is inside the bracket.
+  [[nodiscard]] bool contains(double along) const { return along > low_.along && along < high_.along; }
+
+  /// Cuts the bracket at a sample inside it.
+  void cut(const EdgeSample& at) { (at.slope < 0.0 ? low_ : high_) = at; }
+
+ private:
+  EdgeSample low_;
+  EdgeSample high_;
+  double width_;
+  int steps_ = 0;
+};
 
 // A separation is good enough if it proves this fraction of the distance.
 constexpr double kProvenFraction = 0.998;

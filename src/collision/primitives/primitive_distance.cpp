@@ -5,7 +5,6 @@
 #include <limits>
 
 namespace sprung {
-
 namespace {
 
 using Vector2 = Eigen::Vector2d;
@@ -74,6 +73,14 @@ SurfacePoint revolved_surface(const Solid& solid, const Vector3& p) {
 
 Box3 centred_box(double x, double y, double z) { return {Vector3(-x, -y, -z), Vector3(x, y, z)}; }
 
+/// The point of a circle about the y axis that is farthest in `direction`.
+Vector3 on_circle(double radius, double height, const Vector3& direction) {
+  const double across = std::sqrt(direction.x() * direction.x() + direction.z() * direction.z());
+  if (!(across > 0.0)) return {radius, height, 0.0};
+  const double scale = radius / across;
+  return {scale * direction.x(), height, scale * direction.z()};
+}
+
 }  // namespace
 
 SurfacePoint surface_point(const SphereGeometry& sphere, const Vector3& p) {
@@ -123,6 +130,32 @@ Box3 bounds(const EllipsoidGeometry& ellipsoid) { return {-ellipsoid.radii, elli
 
 Box3 bounds(const HalfSpaceGeometry& /*half_space*/) {
   return {Vector3::Constant(-std::numeric_limits<double>::infinity()), Vector3::Constant(std::numeric_limits<double>::infinity())};
+}
+
+Vector3 support_point(const SphereGeometry& sphere, const Vector3& direction) { return sphere.radius * direction.normalized(); }
+
+Vector3 support_point(const BoxGeometry& box, const Vector3& direction) {
+  return 0.5 * box.size.cwiseProduct(direction.unaryExpr([](double component) { return std::copysign(1.0, component); }));
+}
+
+Vector3 support_point(const CapsuleGeometry& capsule, const Vector3& direction) {
+  const double cap = std::copysign(0.5 * capsule.length, direction.y());
+  return cap * Vector3::UnitY() + capsule.radius * direction.normalized();
+}
+
+Vector3 support_point(const CylinderGeometry& cylinder, const Vector3& direction) {
+  return on_circle(cylinder.radius, std::copysign(0.5 * cylinder.height, direction.y()), direction);
+}
+
+Vector3 support_point(const ConeGeometry& cone, const Vector3& direction) {
+  const Vector3 tip(0.0, 0.5 * cone.height, 0.0);
+  const Vector3 rim = on_circle(cone.radius, -0.5 * cone.height, direction);
+  return direction.dot(tip) >= direction.dot(rim) ? tip : rim;
+}
+
+Vector3 support_point(const EllipsoidGeometry& ellipsoid, const Vector3& direction) {
+  const Vector3 scaled = ellipsoid.radii.cwiseProduct(direction);
+  return ellipsoid.radii.cwiseProduct(scaled / scaled.norm());
 }
 
 }  // namespace sprung

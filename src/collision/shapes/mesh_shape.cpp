@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "collision/mesh_bvh/winding_number.h"
 #include "collision/safe_regions/mesh_safe_region.h"
-#include "collision/safe_regions/safe_region_motion.h"
 #include "collision/shapes/mesh_validation.h"
 #include "geometry/queries/closest_pair.h"
 #include "geometry/queries/side_of_plane.h"

@@ -4,7 +4,6 @@
 #include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/shapes/deforming_mesh.h"
 #include "collision/shapes/obstacle_shape.h"
-#include "collision/shapes/sequence_tree.h"
 #include "geometry/mesh/pseudonormal.h"
 
 namespace sprung {

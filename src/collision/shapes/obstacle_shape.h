@@ -2,14 +2,21 @@
 // leaves) and primitives (exact signed distances).
 #pragma once
 
+#include "base/types.h"
 #include "collision/safe_regions/safe_region.h"
-#include "collision/shapes/moved_triangle.h"
 #include "collision/shapes/obstacle.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 
 namespace sprung {
+
+/// Its corners at an interval's begin and end [m].
+struct MovedTriangle {
+  std::array<Vector3, 3> before;
+  std::array<Vector3, 3> after;
+};
 
 /// The point of the surface nearest to a particle.
 struct SurfacePoint {

@@ -1,4 +1,5 @@
-// Topology of the collision mesh: numbers and owners of edges, owners of corners, and the fan of triangles around each particle.
+// Topology of the collision mesh: numbers and owners of edges, owners of corners, the fan of triangles around each particle, and
+// feature edges, the boundaries and creases. Only feature edges need edge-edge contacts; elsewhere vertex-face contacts are enough.
 #pragma once
 
 #include "collision/surface/collision_surface.h"
@@ -82,6 +83,25 @@ class SurfaceTopology {
   std::vector<FanKind> fans_;
   std::vector<Index> first_spoke_;
   std::vector<Index> spokes_;
+};
+
+class FeatureEdges {
+ public:
+  /// All edges are sharp at first. Keeps references to both arguments.
+  FeatureEdges(const CollisionSurface& surface, const SurfaceTopology& features);
+
+  /// Classifies all edges for the particles at `positions` [m].
+  void update(const Points& positions);
+
+  /// Whether the edge does not belong to exactly two triangles, or their normals differ by more than 45 degrees.
+  [[nodiscard]] bool is_sharp(Index edge) const { return sharp_[static_cast<std::size_t>(edge)] != 0; }
+
+ private:
+  [[nodiscard]] bool turns(Index edge, const Points& positions) const;
+
+  const CollisionSurface& surface_;
+  const SurfaceTopology& features_;
+  std::vector<char> sharp_;  ///< by edge
 };
 
 }  // namespace sprung

@@ -1,7 +1,7 @@
 #include "collision/truncation/vertex_truncation.h"
 
 #include "base/parallel.h"
-#include "collision/core/feasible_point.h"
+#include "collision/core/half_space.h"
 
 #include <algorithm>
 

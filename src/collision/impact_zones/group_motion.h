@@ -1,4 +1,4 @@
-// Planes under an affine motion.
+// The motion of a group: the rigid motion of its pins, and planes under an affine motion.
 //
 // The motion's linear part is interpolated linearly from I to F: A = (1 - t) I + t F. A plane under this motion has the normal
 // cof(A) n (Nanson's formula), a quadratic function of time. The height of a point that moves linearly from x0 to x1 above the
@@ -8,6 +8,9 @@
 #pragma once
 
 #include "base/types.h"
+
+#include <optional>
+#include <span>
 
 namespace sprung {
 
@@ -22,5 +25,16 @@ struct MovedPlane {
 
 /// `normal` has unit length and is that of the step's begin; `linear` is F.
 [[nodiscard]] MovedPlane moved_plane(const Vector3& normal, const Matrix3& linear);
+
+/// Positions of a pin at the begin and the end of a step [m].
+struct PinDisplacement {
+  Vector3 from;
+  Vector3 to;
+};
+
+/// The rigid motion that fits the pins' displacements best (least squares, Kabsch 1976). Empty if it leaves at least half of
+/// the error of their mean translation, because the pins move in parallel or independently, and if it rotates by more than a right
+/// angle. Requires at least one pin.
+[[nodiscard]] std::optional<RigidTransform> rigid_motion_of(std::span<const PinDisplacement> pins);
 
 }  // namespace sprung

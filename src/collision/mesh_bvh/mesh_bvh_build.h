@@ -1,14 +1,38 @@
-// Collapses FCL's binary tree into a tree with up to eight children per node.
+// How a mesh BVH is built: where FCL splits sets of triangles (surface area heuristic, SAH), and how its binary tree is collapsed
+// into one with up to eight children per node.
 #pragma once
 
 #include "base/simd.h"
+#include "base/types.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>
-
+#include <fcl/geometry/bvh/detail/BV_splitter_base.h>
+#include <fcl/math/bv/AABB.h>
 #include <array>
 #include <vector>
 
 namespace sprung {
+
+/// Splits along the longest side of the box around the triangles' middles. Of 15 positions (Wald 2007) it takes the one with the
+/// smallest sum of the areas of the two sets' boxes, each times its number of triangles (MacDonald and Booth 1990). FCL's own
+/// splitter takes the mean, and traversals of its tree visit a sixth more blocks.
+class SahSplitter final : public fcl::detail::BVSplitterBase<fcl::AABB<double>> {
+ public:
+  void set(fcl::Vector3<double>* vertices, fcl::Triangle* triangles, fcl::BVHModelType type) override;
+  void computeRule(const fcl::AABB<double>& box, unsigned int* triangles, int count) override;
+  /// Whether a triangle with this middle belongs to the second child.
+  [[nodiscard]] bool apply(const fcl::Vector3<double>& middle) const override { return middle[axis_] > cut_; }
+  void clear() override;
+
+ private:
+  [[nodiscard]] Vector3 middle(unsigned int triangle) const;
+  [[nodiscard]] Box3 box(unsigned int triangle) const;
+
+  const fcl::Vector3<double>* vertices_ = nullptr;
+  const fcl::Triangle* triangles_ = nullptr;
+  int axis_ = 0;
+  double cut_ = 0.0;
+};
 
 /// Chooses the nodes of the binary tree to leave out so that the total cost is smallest: the sum of the costs of nodes and blocks,
 /// each times the area of its box, which is proportional to the number of its visits (Ylitie, Karras and Laine 2017).

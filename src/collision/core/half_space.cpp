@@ -1,4 +1,4 @@
-#include "collision/core/feasible_point.h"
+#include "collision/core/half_space.h"
 
 #include <algorithm>
 #include <cmath>
