@@ -80,7 +80,7 @@ void ObstacleMotion::append_moved(Index particle, const Vector3& from, std::vect
 std::optional<Vector3> ObstacleMotion::moved(Index particle, const Vector3& from) const {
   for (const Index k : near_obstacles(particle)) {
     if (obstacles_.is_at_rest(k)) continue;
-    const auto moved = obstacles_.shape(k).moved_element({.x = {obstacles_.local_before(k, from)}, .count = 1}, 0.0);
+    const auto moved = obstacles_.shape(k).moved_element({.x = {obstacles_.local_before(k, from)}, .count = 1});
     if (!moved) return std::nullopt;
     const Vector3 position = obstacles_.after(k) * moved->corners.x[0];
     if (!crosses_another(k, particle, from, position)) return position;
@@ -93,12 +93,12 @@ bool ObstacleMotion::crosses_another(Index k, Index particle, const Vector3& fro
   const std::vector<Index> near = near_obstacles(particle);
   return std::any_of(near.begin(), near.end(), [&](Index other) {
     if (other == k) return false;
-    const auto moved = obstacles_.shape(other).moved_element({.x = {obstacles_.local_before(other, from)}, .count = 1}, 0.0);
+    const auto moved = obstacles_.shape(other).moved_element({.x = {obstacles_.local_before(other, from)}, .count = 1});
     return !moved || obstacles_.shape(other).first_crossing(moved->corners.x[0], obstacles_.local(other, position));
   });
 }
 
-void ObstacleMotion::append_moved_elements(Index p, const Points& from, double lift, std::vector<MovedVertex>& corners) const {
+void ObstacleMotion::append_moved_elements(Index p, const Points& from, std::vector<MovedVertex>& corners) const {
   const ElementPatch& patch = surface_.patches[at(p)];
   for (const PatchSafeRegions& regions : regions_.patches_[at(p)].regions) {
     const Index k = regions.obstacle();
@@ -107,7 +107,7 @@ void ObstacleMotion::append_moved_elements(Index p, const Points& from, double l
       const Element& element = surface_.elements[at(patch.first_element + e)];
       ElementCorners local{.count = element.corners};
       for (std::size_t c = 0; c < at(element.corners); ++c) local.x[c] = obstacles_.local_before(k, from.col(element.particles[c]));
-      const auto moved = obstacles_.shape(k).moved_element(local, lift);
+      const auto moved = obstacles_.shape(k).moved_element(local);
       for (std::size_t c = 0; c < at(element.corners) && moved; ++c) {
         const Index i = element.particles[c];
         const Vector3 position = obstacles_.after(k) * moved->corners.x[c];
@@ -117,9 +117,9 @@ void ObstacleMotion::append_moved_elements(Index p, const Points& from, double l
   }
 }
 
-std::vector<MovedVertex> ObstacleMotion::moved_with_elements(const Points& from, double lift) const {
+std::vector<MovedVertex> ObstacleMotion::moved_with_elements(const Points& from) const {
   std::vector<MovedVertex> corners;
-  for (Index p = 0; p < static_cast<Index>(regions_.patches_.size()); ++p) append_moved_elements(p, from, lift, corners);
+  for (Index p = 0; p < static_cast<Index>(regions_.patches_.size()); ++p) append_moved_elements(p, from, corners);
   keep_nearest(corners);
   return corners;
 }

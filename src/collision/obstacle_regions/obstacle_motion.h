@@ -44,9 +44,9 @@ class ObstacleMotion {
   /// none.
   [[nodiscard]] KinematicAnchor anchor(Index particle, const Vector3& from, const Vector3& position) const;
 
-  /// The corners of elements that moving obstacles cross, moved as whole elements, and higher by `lift` (see
+  /// The corners of elements that moving obstacles cross, moved as whole elements (see
   /// ObstacleShape::moved_element). Ascending by particle; a corner of several elements moves with the one nearest to its obstacle.
-  [[nodiscard]] std::vector<MovedVertex> moved_with_elements(const Points& from, double lift) const;
+  [[nodiscard]] std::vector<MovedVertex> moved_with_elements(const Points& from) const;
 
   /// The pushes that obstacles exert on the other corners of elements at pins, relative to the pins, in this interval. Ascending by
   /// particle; of several elements the nearest counts. Requires that the regions were made for these paths.
@@ -59,7 +59,7 @@ class ObstacleMotion {
   [[nodiscard]] Index touched_obstacle(Index particle) const;
   /// Whether a particle that obstacle k moves to `position` would cross another obstacle.
   [[nodiscard]] bool crosses_another(Index k, Index particle, const Vector3& from, const Vector3& position) const;
-  void append_moved_elements(Index patch, const Points& from, double lift, std::vector<MovedVertex>& corners) const;
+  void append_moved_elements(Index patch, const Points& from, std::vector<MovedVertex>& corners) const;
   void append_pushes(Index patch, const PatchSafeRegions& regions, const StepPaths& paths, std::vector<Push>& pushes) const;
 
   const ObstacleSafeRegions& regions_;

@@ -32,7 +32,7 @@ double ObstacleFrame::max_clearance(const Box3& box) const {
 Vector3 ObstacleFrame::moved_position(Index k, const Vector3& from) const {
   if (is_at_rest(k)) return from;
   const Vector3 before = local_before(k, from);
-  const auto moved = shape(k).moved_element({.x = {before}, .count = 1}, 0.0);
+  const auto moved = shape(k).moved_element({.x = {before}, .count = 1});
   return after(k) * (moved ? moved->corners.x[0] : Vector3(before + shape(k).displacement(before)));
 }
 

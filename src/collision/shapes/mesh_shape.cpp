@@ -115,17 +115,16 @@ Vector3 MeshShape::displacement(const Vector3& p, double t, double t_end) const 
   return triangle == kNone ? Vector3(Vector3::Zero()) : deforming_->displacement(triangle, weights, t, t_end);
 }
 
-std::optional<MovedElement> MeshShape::moved_element(const ElementCorners& element, double lift) const {
+std::optional<MovedElement> MeshShape::moved_element(const ElementCorners& element) const {
   if (!deforms_ || deforming_->largest_displacement() == 0.0) return {{element}};
   const SafeRegion region = nearest_before(element);
   if (region.broken || region.triangle == kNone) return std::nullopt;
   MovedElement result{element, region.distance};
   const SurfaceMotion motion = deforming_->motion(region.triangle, region.point);
-  const Vector3 raised = lift * deforming_->largest_displacement() * (motion.linear * region.normal).normalized();
   Vector3 nearest = Vector3::Zero();
   for (int i = 0; i < element.count; ++i) {
     Vector3& corner = result.corners.x[static_cast<std::size_t>(i)];
-    corner = motion.after + motion.linear * (corner - region.point) + raised;
+    corner = motion.after + motion.linear * (corner - region.point);
     nearest += region.weights[i] * corner;
   }
   const auto hit = tree_->first_hit(nearest, motion.after, CrossingSides::both);

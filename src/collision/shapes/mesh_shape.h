@@ -22,7 +22,7 @@ class MeshShape final : public ObstacleShape {
   [[nodiscard]] double largest_displacement() const override { return deforms_ ? deforming_->largest_displacement() : 0.0; }
   [[nodiscard]] Vector3 displacement(const Vector3& p) const override;
   [[nodiscard]] Vector3 displacement(const Vector3& p, double t, double t_end) const override;
-  [[nodiscard]] std::optional<MovedElement> moved_element(const ElementCorners& element, double lift) const override;
+  [[nodiscard]] std::optional<MovedElement> moved_element(const ElementCorners& element) const override;
   [[nodiscard]] std::optional<MovedTriangle> moved_triangle(const Vector3& p) const override;
 
   [[nodiscard]] std::optional<SurfacePoint> nearest(const Vector3& p, double radius) const override;

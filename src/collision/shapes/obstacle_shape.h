@@ -64,11 +64,8 @@ class ObstacleShape {
   [[nodiscard]] virtual Vector3 displacement(const Vector3& /*p*/) const { return Vector3::Zero(); }
 
   /// Moves an element from the begin of the interval to its end together with the nearest triangle. It keeps its height above the
-  /// triangle, plus `lift` times the largest displacement of the surface. Returns nothing if the element touches the surface, if
-  /// no surface is near, or if another triangle comes between.
-  [[nodiscard]] virtual std::optional<MovedElement> moved_element(const ElementCorners& element, double /*lift*/) const {
-    return {{element}};
-  }
+  /// triangle. Returns nothing if the element touches the surface, if no surface is near, or if another triangle comes between.
+  [[nodiscard]] virtual std::optional<MovedElement> moved_element(const ElementCorners& element) const { return {{element}}; }
 
   /// The triangle nearest to p at the begin of the interval, in the shape's frame. Returns nothing if the shape does not deform.
   [[nodiscard]] virtual std::optional<MovedTriangle> moved_triangle(const Vector3& /*p*/) const { return std::nullopt; }

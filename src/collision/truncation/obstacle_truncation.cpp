@@ -1,6 +1,6 @@
 #include "collision/truncation/obstacle_truncation.h"
 
-#include "collision/truncation/time_subdivision.h"
+#include "collision/truncation/vertex_truncation.h"
 
 #include <algorithm>
 #include <iterator>
@@ -37,9 +37,8 @@ void add_free(std::vector<Index> all, std::vector<Index>& particles, Outcomes& o
   outcomes = std::move(of_all);
 }
 
-// Crossed elements move with the obstacle as a whole; then the elements that they cross there do too. Elements that are still
-// crossed move higher above the obstacle in each round.
-constexpr double kLifts[] = {0.0, 0.0, 1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};
+// Crossed elements move with the obstacle as a whole; then the elements that they cross there do too.
+constexpr int kElementRounds = 2;
 
 /// Moves the infeasible ones of these particles with an obstacle, from `before` [m], 3 x n, and their neighbours too if an element
 /// would be crossed otherwise. Changes `after` and the outcomes. Particles that move together with one obstacle stay on their side
@@ -64,10 +63,10 @@ void move_infeasible(ObstacleSafeRegions& regions, const ObstacleFrame& obstacle
     moved.push_back(i);
   }
   regions.renew_around(moved, {obstacles, after, after, true});
-  for (const double lift : kLifts) {
+  for (int round = 0; round < kElementRounds; ++round) {
     if (moved.empty()) break;
     moved.clear();
-    for (const auto& [i, distance, position] : motion.moved_with_elements(before, lift)) {
+    for (const auto& [i, distance, position] : motion.moved_with_elements(before)) {
       const std::size_t n = number[static_cast<std::size_t>(i)];
       if (n == particles.size() || crossed_before[n] != 0) continue;
       after.col(i) = position;
