@@ -1,7 +1,7 @@
 #include "collision/impact_zones/division_planes.h"
 
 #include "base/parallel.h"
-#include "collision/core/contact_constants.h"
+#include "collision/core/contact.h"
 #include "collision/impact_zones/group_motion.h"
 
 #include <algorithm>

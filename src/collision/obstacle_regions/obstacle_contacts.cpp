@@ -1,9 +1,9 @@
 #include "base/kernel.h"
 #include "base/parallel.h"
 #include "base/simd.h"
-#include "collision/core/contact_constants.h"
+#include "collision/core/contact.h"
 #include "collision/obstacle_regions/obstacle_safe_regions.h"
-#include "collision/obstacles/vertex_contact.h"
+#include "collision/obstacles/obstacle_frame.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "collision/pairs/element_contacts.h"
 
 #include "base/parallel.h"
-#include "collision/core/contact_constants.h"
+#include "collision/core/contact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "collision/pairs/proximity_search.h"
 
 #include "base/parallel.h"
-#include "collision/core/contact_constants.h"
+#include "collision/core/contact.h"
 #include "collision/element_bvh/feature_filters.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include "collision/primitives/primitive_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -81,6 +82,55 @@ Vector3 on_circle(double radius, double height, const Vector3& direction) {
   return {scale * direction.x(), height, scale * direction.z()};
 }
 
+/// The sum of (z_i / (u + gap_i))^2 minus 1, and its derivative. Terms with z_i = 0 vanish, even at their pole.
+struct Secular {
+  double value = -1.0;
+  double slope = 0.0;
+};
+
+Secular secular(const Vector3& z, const Vector3& gap, double u) {
+  Secular sum;
+  for (int i = 0; i < 3; ++i) {
+    if (z[i] == 0.0) continue;
+    const double ratio = z[i] / (u + gap[i]);
+    sum.value += ratio * ratio;
+    sum.slope -= 2.0 * ratio * ratio / (u + gap[i]);
+  }
+  return sum;
+}
+
+/// The largest root, or 0 if the function is negative from 0 on. Right of the last pole the function is convex and decreasing, so
+/// Newton steps from the left never pass the root. Rounding ends the iteration.
+double largest_root(const Vector3& z, const Vector3& gap) {
+  double u = std::max((z - gap).maxCoeff(), 0.0);
+  if (u == 0.0 && !(secular(z, gap, u).value > 0.0)) return 0.0;
+  for (;;) {
+    const Secular at = secular(z, gap, u);
+    if (!(at.value > 0.0)) return u;
+    const double next = u - at.value / at.slope;
+    if (!(next > u)) return u;
+    u = next;
+  }
+}
+
+/// The point of the ellipsoid nearest to p, with p in the first octant and radii in decreasing order. The nearest point x
+/// satisfies p - x = t (x_i / r_i^2), so x_i = r_i^2 p_i / (t + r_i^2) with the largest t for which x is on the surface (Eberly,
+/// "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", 2013). In units of the smallest radius, u = t / r_3^2
+/// + 1.
+Vector3 nearest_in_octant(const Vector3& radii, const Vector3& p) {
+  const Vector3 scale = radii / radii[2];
+  const Vector3 gap = scale.array().square() - 1.0;
+  const Vector3 z = scale.cwiseProduct(p / radii[2]);
+  const double u = largest_root(z, gap);
+  Vector3 x = Vector3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (z[i] > 0.0) x[i] = scale[i] * scale[i] * p[i] / (u + gap[i]);
+  }
+  // On the medial disc two points are nearest, one above and one below it.
+  if (u == 0.0) x[2] = radii[2] * std::sqrt(std::max(-secular(z, gap, 0.0).value, 0.0));
+  return x;
+}
+
 }  // namespace
 
 SurfacePoint surface_point(const SphereGeometry& sphere, const Vector3& p) {
@@ -156,6 +206,46 @@ Vector3 support_point(const ConeGeometry& cone, const Vector3& direction) {
 Vector3 support_point(const EllipsoidGeometry& ellipsoid, const Vector3& direction) {
   const Vector3 scaled = ellipsoid.radii.cwiseProduct(direction);
   return ellipsoid.radii.cwiseProduct(scaled / scaled.norm());
+}
+
+std::optional<Crossing> first_crossing_of_convex(const std::function<SurfacePoint(const Vector3&)>& distance, double rounding,
+                                                 const Vector3& a, const Vector3& b) {
+  if (a == b) return std::nullopt;
+  const Vector3 path = b - a;
+  double fraction = 0.0;
+  SurfacePoint surface = distance(a);
+  if (surface.distance < -rounding) return std::nullopt;
+  // Newton's method converges quadratically, except on a path that grazes the surface. There each step halves the rest, and 64
+  // halvings are enough.
+  for (int step = 0; step < 64 && surface.distance > rounding; ++step) {
+    const double slope = surface.normal.dot(path);
+    const double height = surface.distance - 0.5 * rounding;
+    if (height + slope * (1.0 - fraction) > 0.0) return std::nullopt;
+    fraction = std::min(fraction - height / slope, 1.0);
+    surface = distance(a + fraction * path);
+  }
+  if (fraction == 0.0 && surface.normal.dot(path) >= 0.0) return std::nullopt;
+  return Crossing{fraction, surface.point, surface.normal};
+}
+
+SurfacePoint surface_point(const EllipsoidGeometry& ellipsoid, const Vector3& p) {
+  std::array<int, 3> order{0, 1, 2};
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return ellipsoid.radii[i] > ellipsoid.radii[j]; });
+  Vector3 radii;
+  Vector3 folded;
+  for (int i = 0; i < 3; ++i) {
+    radii[i] = ellipsoid.radii[order[i]];
+    folded[i] = std::abs(p[order[i]]);
+  }
+  const Vector3 nearest = nearest_in_octant(radii, folded);
+
+  SurfacePoint found;
+  for (int i = 0; i < 3; ++i) found.point[order[i]] = std::signbit(p[order[i]]) ? -nearest[i] : nearest[i];
+  // The gradient of the sum of (x_i / r_i)^2. It has a direction even if p is on the surface.
+  const Vector3 unit = found.point.cwiseQuotient(ellipsoid.radii);
+  found.normal = unit.cwiseQuotient(ellipsoid.radii / radii[2]).normalized();
+  found.distance = found.normal.dot(p - found.point);
+  return found;
 }
 
 }  // namespace sprung

@@ -1,9 +1,9 @@
-// A primitive as the shape of an obstacle, based on its signed distance.
+// A primitive as the shape of an obstacle, based on its signed distance, and the safe region of an element before it.
 #pragma once
 
 #include "collision/primitives/convex_separating_plane.h"
 #include "collision/primitives/primitive_distance.h"
-#include "collision/primitives/primitive_safe_region.h"
+#include "collision/safe_regions/safe_region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,35 @@
 #include <type_traits>
 
 namespace sprung {
+
+/// Builds the safe region: the requested box and, if the primitive intersects it, the best separating plane. The region is broken
+/// if the element is within rounding of the primitive. Then `distance`, `point` and `normal` describe the shortest displacement
+/// that separates the element from the primitive.
+template <class Primitive>
+requires requires(const Primitive& primitive) { bounds(primitive); }
+[[nodiscard]] SafeRegion find_region(const Primitive& primitive, const ElementCorners& element, const SafeRegionRequest& request) {
+  SafeRegion region{.box = requested_box(element, request), .clear = request.reach};
+  if (!region.box.intersects(bounds(primitive))) return region;
+  const SeparatingPlane best = separation(primitive, element, region.box);
+  if (!is_touching(lowest(region.box, best.normal) - best.height, request)) return region;
+
+  region.normal = best.normal;
+  if (is_touching(best.gap, request)) {
+    region.broken = true;
+    region.clear = 0.0;
+    region.distance = best.gap;
+    region.weights = Vector3::Unit(best.lowest_corner);
+    region.point = element.x[static_cast<std::size_t>(best.lowest_corner)] - best.gap * best.normal;
+    return region;
+  }
+  region.clear = best.gap;
+  region.distance = best.distance;
+  region.point = best.point;
+  region.weights = best.weights;
+  region.planes[0] = {best.normal, std::min(best.height + stand_off(best.gap, request), best.lowest)};
+  region.plane_count = 1;
+  return region;
+}
 
 /// The first intersection of a path with a convex solid of signed distance `distance`. The distance is convex along the path and
 /// above its tangents, so Newton steps never pass the surface. A tangent that stays positive proves that the rest of the path is

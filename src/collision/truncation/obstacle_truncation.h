@@ -1,8 +1,8 @@
 // Clips all particles before obstacles.
 #pragma once
 
-#include "collision/truncation/time_subdivision.h"
 #include "collision/truncation/truncation_result.h"
+#include "collision/truncation/vertex_truncation.h"
 
 #include <vector>
 

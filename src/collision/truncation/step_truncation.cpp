@@ -2,7 +2,7 @@
 
 #include "collision/truncation/obstacle_truncation.h"
 #include "collision/truncation/pair_truncation.h"
-#include "collision/truncation/time_subdivision.h"
+#include "collision/truncation/vertex_truncation.h"
 
 #include <algorithm>
 #include <optional>

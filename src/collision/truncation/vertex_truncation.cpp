@@ -6,7 +6,6 @@
 #include <algorithm>
 
 namespace sprung {
-
 namespace {
 
 // A displacement smaller than this fraction of the coordinates is rounding.
@@ -22,6 +21,8 @@ Vector3 without_rounding(const std::vector<HalfSpace>& bounds, const Vector3& fr
   const bool stays = (position - from).cwiseAbs().maxCoeff() <= kRounding * from.cwiseAbs().maxCoeff() && is_feasible(bounds, from);
   return stays ? from : position;
 }
+
+constexpr double kMinFraction = 1.0 / 64.0;
 
 }  // namespace
 
@@ -97,6 +98,33 @@ Vector3 VertexTruncation::within_sphere(Index particle, const Vector3& position)
   const auto [center, radius] = pairs_->sphere(particle);
   const double distance = (position - center).norm();
   return distance > radius ? Vector3(center + radius / distance * (position - center)) : position;
+}
+
+// The loop ends: each round either halves the substep, at most six times, or finishes at least 1/64 of the interval.
+Outcomes clip_in_substeps(const StepPaths& paths, Points& after, const ClipSubstep& clip) {
+  const double begin = paths.obstacles.begin();
+  const double end = paths.obstacles.end();
+  const auto time = [&](double fraction) { return fraction < 1.0 ? begin + fraction * (end - begin) : end; };
+  Outcomes outcomes;
+  Points from = paths.from;
+  double done = 0.0;
+  double fraction = 0.5;
+  while (done < 1.0) {
+    const double next = std::min(1.0, done + fraction);
+    const ObstacleFrame obstacles = paths.obstacles.part(time(done), time(next));
+    const Points to = next < 1.0 ? Points(from + (next - done) / (1.0 - done) * (paths.to - from)) : paths.to;
+    after = to;
+    auto [of_substep, path_checked] = clip({obstacles, from, to}, after);
+    if (fraction > kMinFraction && (!path_checked || count(of_substep, Outcome::infeasible) > 0)) {
+      fraction *= 0.5;
+      continue;
+    }
+    keep_infeasible(outcomes, of_substep);
+    outcomes = std::move(of_substep);
+    from = after;
+    done = next;
+  }
+  return outcomes;
 }
 
 }  // namespace sprung

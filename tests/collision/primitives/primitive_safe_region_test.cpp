@@ -1,4 +1,4 @@
-#include "collision/primitives/primitive_safe_region.h"
+#include "collision/primitives/primitive_shape.h"
 
 #include "collision/sample_meshes.h"
 #include "collision/shapes/obstacle_shape.h"
