@@ -130,7 +130,7 @@ void ObstacleMotion::append_pushes(Index p, const PatchSafeRegions& regions, con
   const Index k = regions.obstacle();
   for (Index e = 0; e < topology.element_count(); ++e) {
     const SafeRegion& region = regions.region(e);
-    if (!topology.corners(e).fixed || region.broken || !std::isfinite(region.distance)) continue;
+    if (region.broken || !std::isfinite(region.distance)) continue;
     const Vector3 normal = obstacles_.before(k).linear() * region.normal;
     const auto corners = corners_of(surface_.elements[at(surface_.patches[at(p)].first_element + e)]);
     double approach = 0.0;

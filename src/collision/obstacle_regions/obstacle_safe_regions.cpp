@@ -45,7 +45,6 @@ ObstacleSafeRegions::ObstacleSafeRegions(const ObstacleSet& set, const Collision
 void ObstacleSafeRegions::find_fixed() {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const ElementPatch& elements = surface_.patches[p];
-    patches_[p].topology.find_fixed(surface_, elements);
     patches_[p].fixed = std::ranges::all_of(elements.particles, [&](Index i) { return is_fixed(surface_.motions, i); });
   }
 }
@@ -135,8 +134,7 @@ RegionDemand ObstacleSafeRegions::demand(const Patch& patch, Index k, const Step
   RegionDemand demand{.size = patch.size,
                       .gap = patch.thickness + paths.obstacles.obstacle(k).material.thickness,
                       .margin = margin_,
-                      .at_end = paths.at_end,
-                      .ahead = ahead_};
+                      .at_end = paths.at_end};
   demand.clearance = patch.box.isEmpty() ? 0.0 : paths.obstacles.clearance(k, patch.box.min(), patch.box.max());
   demand.gap = std::max(demand.gap, demand.clearance);
   return demand;

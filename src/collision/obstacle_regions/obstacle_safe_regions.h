@@ -33,9 +33,6 @@ class ObstacleSafeRegions {
   /// Discards all regions and restores the permitted crossings. Call it after the state was rolled back.
   void roll_back(const PermittedCrossings& permitted);
 
-  /// Whether regions that are made from now on count elements at pins as near if anything comes near their path.
-  void look_ahead(bool ahead) { ahead_ = ahead; }
-
   /// Permits crossings of elements that an obstacle crosses and a pin pulls through it, until they are free again: their corners
   /// have no regions and no contacts with that obstacle. Requires update() for paths that start at `from`.
   void permit_crossings(const Points& from);
@@ -113,7 +110,6 @@ class ObstacleSafeRegions {
 
   const CollisionSurface& surface_;
   double margin_;
-  bool ahead_ = false;  ///< see look_ahead
   Points rest_;
   std::vector<Patch> patches_;
   PermittedCrossings permitted_crossings_;

@@ -56,13 +56,13 @@ struct ElementPath {
   double longest = 0.0;  ///< largest displacement [m]; not finite if a corner is not
 };
 
-SafeRegionRequest request(const RegionDemand& demand, bool fixed, const ElementPath& path) {
+SafeRegionRequest request(const RegionDemand& demand, const ElementPath& path) {
   const double min_reach = std::max(kReachOfSize * demand.size, kReachOfGap * demand.gap);
   return {.reach = min_reach + kReachOfMotion * path.longest,
           .path = path.to,
           .gap = demand.gap,
           .clearance = demand.clearance,
-          .exact = demand.gap + demand.margin + (demand.ahead && fixed ? path.longest : 0.0),
+          .exact = demand.gap + demand.margin,
           .at_end = demand.at_end};
 }
 
@@ -163,7 +163,7 @@ void PatchSafeRegions::make_marked(const ObstacleShape& shape, const PatchTopolo
     const ElementPath path(paths, corners);
     SafeRegion& region = regions_[at(e)];
     if (std::isfinite(path.longest)) {
-      shape.find_region(path.from, request(demand, corners.fixed, path), region);
+      shape.find_region(path.from, request(demand, path), region);
     } else {
       region = SafeRegion{.broken = true};
     }
@@ -190,7 +190,7 @@ const SafeRegion& PatchSafeRegions::renew_closest_points(const ObstacleShape& sh
   for (std::size_t k = 0; k < at(corners.count); ++k) from.x[k] = paths.from(corners.slots[k]);
   const auto search = closest_points_.next_search(e, from, region.drift, demand.gap, shape.is_round());
   if (search == ClosestPointTracker::Search::none) return region;
-  SafeRegionRequest asked = request(demand, corners.fixed, ElementPath(paths, corners));
+  SafeRegionRequest asked = request(demand, ElementPath(paths, corners));
   asked.reach = std::max(asked.reach, asked.exact);
   shape.update_closest_points(from, asked, search == ClosestPointTracker::Search::same_triangle, region);
   for (Vector3& corner : from.x) corner += region.drift;
@@ -204,8 +204,7 @@ void PatchSafeRegions::find_near_elements(const PatchTopology& topology, const R
   for (Index e = 0; e < topology.element_count(); ++e) {
     const SafeRegion& region = regions_[at(e)];
     any_crossed_ = any_crossed_ || region.broken;
-    const bool comes_near = demand.ahead && topology.corners(e).fixed && std::isfinite(region.distance);
-    if (region.distance < demand.gap + demand.margin || comes_near) near_elements_.push_back(e);
+    if (region.distance < demand.gap + demand.margin) near_elements_.push_back(e);
   }
 }
 

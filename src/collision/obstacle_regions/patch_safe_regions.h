@@ -58,7 +58,6 @@ struct RegionDemand {
   double margin = 0.0;     ///< contacts are found this much beyond the gap
   double clearance = 0.0;  ///< see SafeRegionRequest
   bool at_end = false;     ///< see SafeRegionRequest
-  bool ahead = false;      ///< elements at pins count as near if anything comes near their path
 };
 
 class PatchSafeRegions {

@@ -26,11 +26,4 @@ PatchTopology::PatchTopology(const CollisionSurface& surface, const ElementPatch
   }
 }
 
-void PatchTopology::find_fixed(const CollisionSurface& surface, const ElementPatch& patch) {
-  for (std::size_t e = 0; e < corners_.size(); ++e) {
-    corners_[e].fixed = std::ranges::any_of(corners_of(surface.elements[static_cast<std::size_t>(patch.first_element) + e]),
-                                            [&](Index i) { return is_fixed(surface.motions, i); });
-  }
-}
-
 }  // namespace sprung

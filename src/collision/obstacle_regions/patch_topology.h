@@ -16,13 +16,9 @@ class PatchTopology {
   struct Corners {
     std::array<Index, 3> slots{};
     int count = 0;
-    bool fixed = false;  ///< whether any corner is a fixed particle
   };
 
   PatchTopology(const CollisionSurface& surface, const ElementPatch& patch);
-
-  /// Reads from the surface which corners are fixed; none is before.
-  void find_fixed(const CollisionSurface& surface, const ElementPatch& patch);
 
   [[nodiscard]] Index element_count() const { return static_cast<Index>(corners_.size()); }
   [[nodiscard]] Index slot_count() const { return static_cast<Index>(first_.size()) - 1; }

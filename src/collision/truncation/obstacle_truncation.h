@@ -41,8 +41,6 @@ class ObstacleTruncation {
   /// Particles that are not fixed and whose paths are finite, ascending.
   [[nodiscard]] std::vector<Index> all_movable(const StepPaths& paths) const;
 
-  [[nodiscard]] const std::vector<Index>& fixed() const { return fixed_; }  ///< ascending
-
  private:
   [[nodiscard]] std::vector<Index> movable(std::vector<Index> particles, const StepPaths& paths) const;
   /// Clips, and again with renewed regions if any particle was stopped. Adds particles, ascending, that the new regions may stop.

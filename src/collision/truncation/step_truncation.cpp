@@ -37,7 +37,6 @@ struct StepTruncation::Implementation {
   CollisionSurface surface;
   ObstacleSafeRegions regions;
   ObstacleTruncation obstacle_truncation;
-  bool ahead = false;                   ///< see look_ahead
   std::optional<PairSeparation> pairs;  ///< if elements of the network may touch
   std::vector<Contact> contacts{};
   std::vector<Contact> pair_contacts{};  ///< of the step that begin_step() began
@@ -65,7 +64,6 @@ void StepTruncation::begin_step(const ObstacleFrame& obstacles, const Points& be
   const StepPaths paths{obstacles, before, after};
   implementation_->regions.update(paths);
   implementation_->regions.permit_crossings(before);
-  if (implementation_->ahead) implementation_->regions.renew_around(implementation_->obstacle_truncation.fixed(), paths);
   if (implementation_->pairs) implementation_->begin_pairs(before, after);
 }
 
@@ -74,11 +72,6 @@ const PermittedCrossings& StepTruncation::permitted_crossings() const { return i
 void StepTruncation::roll_back(const PermittedCrossings& permitted) {
   implementation_->regions.roll_back(permitted);
   if (implementation_->pairs) implementation_->pairs->forget();
-}
-
-void StepTruncation::look_ahead(bool ahead) {
-  implementation_->ahead = ahead;
-  implementation_->regions.look_ahead(ahead);
 }
 
 const std::vector<Contact>& StepTruncation::contacts(const ObstacleFrame& obstacles, const Points& before, const Points& after) {

@@ -47,10 +47,6 @@ class StepTruncation {
   /// Discards cached regions and restores the permitted crossings. Call it after the state was rolled back.
   void roll_back(const PermittedCrossings& permitted);
 
-  /// Whether contacts of elements at pins are found along their whole path, at any distance. Truncation cannot stop a pin, so a
-  /// step that failed is tried again like this; it is not the default, because many of these contacts would never touch.
-  void look_ahead(bool ahead);
-
   /// The contacts of the step: of particles with obstacles (see ObstacleFrame::contacts), of obstacles with the inside of edges and
   /// faces, and of the network's elements with each other. The same order for any number of threads. Requires begin_step() with the
   /// same positions. Valid until the next call.

@@ -57,7 +57,6 @@ class ContactProjection {
   /// See StepTruncation.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return truncation_.permitted_crossings(); }
   void roll_back(const PermittedCrossings& permitted) { truncation_.roll_back(permitted); }
-  void look_ahead(bool ahead) { truncation_.look_ahead(ahead); }
 
   /// One pass; see ContactSolver.
   double project(Points& positions) { return solver_.project(positions); }

@@ -34,10 +34,7 @@ class StepConstraints {
   void set_steady_acceleration(double acceleration) { steady_acceleration_ = acceleration; }
 
   /// Makes the substeps that follow as planned.
-  void follow(const StepPlan& plan) {
-    contacts_.look_ahead(plan.look_ahead);
-    global_limit_ = plan.global_limit;
-  }
+  void follow(const StepPlan& plan) { global_limit_ = plan.global_limit; }
 
   /// Adds a constraint that passes restore in each step.
   void add(std::shared_ptr<Constraint> constraint) { constraints_.push_back(std::move(constraint)); }

@@ -19,7 +19,6 @@ struct SolverTrial {
 struct StepPlan {
   int contact_steps = 1;     ///< parts of the step for which contacts are found anew
   int inner = 1;             ///< substeps of each, in which forces and the stretch limit act; 1 until inner substeps exist
-  bool look_ahead = false;   ///< whether contacts at pins are found along whole paths; see StepTruncation::look_ahead
   bool global_limit = true;  ///< whether global solves enforce the stretch limit where they do otherwise; or passes alone
   std::optional<SolverTrial> trial{};
   Index abandon_at = std::numeric_limits<Index>::max();  ///< infeasible particles in a substep that end the attempt

@@ -94,7 +94,6 @@ std::optional<StepPlan> StepPlanner::repetition(std::span<const StepTrial> tried
     if (begin.substeps > kMaxSubsteps / factor) break;
     if (factor * begin.substeps <= tried.back().plan.contact_steps) continue;
     return StepPlan{.contact_steps = factor * begin.substeps,
-                    .look_ahead = true,
                     .global_limit = false,  // a global solve does not know contacts and moves particles far
                     .abandon_at = (infeasible + 1) / 2,
                     .reason = PlanReason::infeasible};
