@@ -3,7 +3,6 @@
 
 #include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/safe_regions/safe_region.h"
-#include "collision/safe_regions/triangle_separating_plane.h"
 #include "collision/sample_meshes.h"
 
 namespace sprung::test {

@@ -1,6 +1,7 @@
 #include "collision/element_bvh/element_bvh.h"
 
 #include "base/parallel.h"
+#include "collision/core/block_bounds.h"
 #include "collision/core/spatial_partition.h"
 #include "geometry/mesh/triangle_mesh.h"
 
@@ -154,13 +155,9 @@ void ElementBvh::bound_node(Node& node) const {
 std::vector<ElementBvh::LeafPair> ElementBvh::find_pairs(HorizonTimes times, double margin) const {
   const Search search{static_cast<float>(times.now), static_cast<float>(times.end), static_cast<float>(margin)};
   const std::vector<NodePair> tasks = find_tasks(search);
-  std::vector<std::vector<LeafPair>> batches(tasks.size());
-  parallel_chunks(static_cast<Index>(tasks.size()), 1, [&](Index begin, Index end) {
-    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) traverse(tasks[k], search, batches[k]);
+  return collect_from_chunks<LeafPair>(static_cast<Index>(tasks.size()), 1, [&](Index task, Index, std::vector<LeafPair>& found) {
+    traverse(tasks[static_cast<std::size_t>(task)], search, found);
   });
-  std::vector<LeafPair> found;
-  for (const std::vector<LeafPair>& batch : batches) found.insert(found.end(), batch.begin(), batch.end());
-  return found;
 }
 
 std::vector<ElementBvh::NodePair> ElementBvh::find_tasks(const Search& search) const {

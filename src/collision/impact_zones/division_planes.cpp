@@ -1,6 +1,7 @@
 #include "collision/impact_zones/division_planes.h"
 
 #include "base/parallel.h"
+#include "collision/core/block_bounds.h"
 #include "collision/core/contact.h"
 #include "collision/impact_zones/group_motion.h"
 
@@ -63,18 +64,14 @@ void DivisionPlanes::renew_normals(std::vector<ContactStencil>& pairs) const {
 
 std::vector<Index> DivisionPlanes::find_passing(std::vector<ContactStencil>& pairs) const {
   const auto count = static_cast<Index>(pairs.size());
-  std::vector<std::vector<Index>> batches(static_cast<std::size_t>((count + kPairsPerTask - 1) / kPairsPerTask));
-  parallel_chunks(count, kPairsPerTask, [&](Index begin, Index end) {
+  return collect_from_chunks<Index>(count, kPairsPerTask, [&](Index begin, Index end, std::vector<Index>& passing) {
     for (Index k = begin; k < end; ++k) {
       ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
       if (!(heights_at(pair, ends_).gap() < tolerance_.least())) continue;
       pair.normal = separating_direction(pair, before_);
-      if (passes(pair) && !is_fixed_rigidly(pair)) batches[static_cast<std::size_t>(begin / kPairsPerTask)].push_back(k);
+      if (passes(pair) && !is_fixed_rigidly(pair)) passing.push_back(k);
     }
   });
-  std::vector<Index> passing;
-  for (const std::vector<Index>& batch : batches) passing.insert(passing.end(), batch.begin(), batch.end());
-  return passing;
 }
 
 bool DivisionPlanes::is_fixed_rigidly(const ContactStencil& pair) const {

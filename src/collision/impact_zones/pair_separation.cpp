@@ -1,9 +1,7 @@
 #include "collision/impact_zones/pair_separation.h"
 
-#include "collision/impact_zones/division_planes.h"
 #include "collision/pairs/contact_stencil.h"
 #include "collision/pairs/element_contacts.h"
-#include "collision/pairs/neighbour_list.h"
 
 #include <algorithm>
 
@@ -16,94 +14,71 @@ constexpr double kKeptFraction = 0.125;
 
 }  // namespace
 
-struct PairSeparation::Implementation {
-  Implementation(const CollisionSurface& own, const Points& rest, double margin) : surface(own), list(own, rest, margin) {}
-
-  [[nodiscard]] std::span<const DivisionPlanes::Bound> bounds_of(Index particle) const {
-    const auto range = std::equal_range(bounds.begin(), bounds.end(), DivisionPlanes::Bound{.particle = particle, .half_space = {}},
-                                        [](const auto& a, const auto& b) { return a.particle < b.particle; });
-    return {range.first, range.second};
-  }
-
-  [[nodiscard]] Index body_at(Index particle) {
-    return surface.elements[static_cast<std::size_t>(list.topology().elements_at(particle).front())].body;
-  }
-
-  const CollisionSurface& surface;
-  NeighbourList list;
-  Points ends;
-  std::vector<Index> constrained;  ///< ascending
-  std::vector<Index> passing;      ///< ascending
-  std::vector<DivisionPlanes::Bound> bounds;
-  std::vector<Index> anchored;
-  bool rotated = false;  ///< pairs may have rotated without their normals
-};
-
 PairSeparation::PairSeparation(const CollisionSurface& surface, const Points& rest, double margin)
-    : implementation_(new Implementation(surface, rest, margin)) {}
-PairSeparation::~PairSeparation() = default;
-PairSeparation::PairSeparation(PairSeparation&&) noexcept = default;
-PairSeparation& PairSeparation::operator=(PairSeparation&&) noexcept = default;
+    : surface_(surface), list_(surface, rest, margin) {}
+
+std::span<const DivisionPlanes::Bound> PairSeparation::bounds_of(Index particle) const {
+  const auto range = std::equal_range(bounds_.begin(), bounds_.end(), DivisionPlanes::Bound{.particle = particle, .half_space = {}},
+                                      [](const auto& a, const auto& b) { return a.particle < b.particle; });
+  return {range.first, range.second};
+}
+
+Index PairSeparation::body_at(Index particle) const {
+  return surface_.elements[static_cast<std::size_t>(list_.topology().elements_at(particle).front())].body;
+}
 
 void PairSeparation::begin_step(const Points& before, const Points& after, std::vector<Contact>& contacts) {
-  Implementation& self = *implementation_;
-  self.list.begin_step(before, after);
-  append_self_contacts(self.surface, self.list.topology(), self.list.candidates(), before, after, contacts);
+  list_.begin_step(before, after);
+  append_self_contacts(surface_, list_.topology(), list_.candidates(), before, after, contacts);
 }
 
 void PairSeparation::forget() {
-  implementation_->list.forget();
-  implementation_->rotated = false;
+  list_.forget();
+  rotated_ = false;
 }
 
-void PairSeparation::begin_substep(const Points& before, const Points& after) {
-  implementation_->list.begin_substep(before, after);
-}
+void PairSeparation::begin_substep(const Points& before, const Points& after) { list_.begin_substep(before, after); }
 
 const std::vector<Index>& PairSeparation::constrain(const Points& before, const Points& targets,
                                                     const ParticleDisplacements& displacements) {
-  Implementation& self = *implementation_;
-  DivisionPlanes planes(before, targets, self.surface.motions, displacements, kKeptFraction * self.surface.thickness.minCoeff());
-  self.list.follow(before, targets);
-  if (self.rotated) planes.renew_normals(self.list.pairs());
-  while (planes.constrain(self.list.pairs())) self.list.follow(before, planes.ends());
-  self.rotated = planes.rotates();
-  self.ends = planes.ends();
-  self.constrained = planes.constrained();
-  std::sort(self.constrained.begin(), self.constrained.end());
-  self.passing = planes.passing();
-  std::sort(self.passing.begin(), self.passing.end());
-  self.bounds = planes.bounds(self.list.pairs());
-  self.anchored = planes.anchored();
-  return self.constrained;
+  DivisionPlanes planes(before, targets, surface_.motions, displacements, kKeptFraction * surface_.thickness.minCoeff());
+  list_.follow(before, targets);
+  if (rotated_) planes.renew_normals(list_.pairs());
+  while (planes.constrain(list_.pairs())) list_.follow(before, planes.ends());
+  rotated_ = planes.rotates();
+  ends_ = planes.ends();
+  constrained_ = planes.constrained();
+  std::sort(constrained_.begin(), constrained_.end());
+  passing_ = planes.passing();
+  std::sort(passing_.begin(), passing_.end());
+  bounds_ = planes.bounds(list_.pairs());
+  anchored_ = planes.anchored();
+  return constrained_;
 }
 
-Vector3 PairSeparation::safe_position(Index particle) const { return implementation_->ends.col(particle); }
+Vector3 PairSeparation::safe_position(Index particle) const { return ends_.col(particle); }
 
 void PairSeparation::append_half_spaces(Index particle, std::vector<HalfSpace>& half_spaces) const {
-  for (const DivisionPlanes::Bound& bound : implementation_->bounds_of(particle)) half_spaces.push_back(bound.half_space);
+  for (const DivisionPlanes::Bound& bound : bounds_of(particle)) half_spaces.push_back(bound.half_space);
 }
 
 PairSeparation::Sphere PairSeparation::sphere(Index particle) const {
-  const VertexBounds& spheres = implementation_->list.spheres();
+  const VertexBounds& spheres = list_.spheres();
   return {spheres.center(particle, 1.0), spheres.radius(particle)};
 }
 
-const std::vector<Index>& PairSeparation::anchored() const { return implementation_->anchored; }
+const std::vector<Index>& PairSeparation::anchored() const { return anchored_; }
 
-bool PairSeparation::passes(Index particle) const {
-  return std::binary_search(implementation_->passing.begin(), implementation_->passing.end(), particle);
-}
+bool PairSeparation::passes(Index particle) const { return std::binary_search(passing_.begin(), passing_.end(), particle); }
 
 std::vector<Index> PairSeparation::passing_fixed() const {
-  const CollisionSurface& surface = implementation_->surface;
-  const auto is_driven = [&](Index i) { return surface.motions[static_cast<std::size_t>(i)] == ParticleMotion::driven; };
+  const auto is_driven = [&](Index i) { return surface_.motions[static_cast<std::size_t>(i)] == ParticleMotion::driven; };
   std::vector<Index> fixed;
-  for (const Index i : implementation_->passing) {
-    if (!is_fixed(surface.motions, i) || (!fixed.empty() && fixed.back() == i)) continue;
-    const auto elements = implementation_->list.topology().elements_at(i);
+  for (const Index i : passing_) {
+    if (!is_fixed(surface_.motions, i) || (!fixed.empty() && fixed.back() == i)) continue;
+    const auto elements = list_.topology().elements_at(i);
     const bool driven_as_a_whole = std::ranges::all_of(elements, [&](Index e) {
-      return std::ranges::all_of(corners_of(surface.elements[static_cast<std::size_t>(e)]), is_driven);
+      return std::ranges::all_of(corners_of(surface_.elements[static_cast<std::size_t>(e)]), is_driven);
     });
     if (!driven_as_a_whole) fixed.push_back(i);
   }
@@ -111,18 +86,17 @@ std::vector<Index> PairSeparation::passing_fixed() const {
 }
 
 bool PairSeparation::allows(Index particle, const Vector3& p) const {
-  if (!implementation_->list.spheres().contains(particle, p, 1.0)) return false;
-  const auto bounds = implementation_->bounds_of(particle);
+  if (!list_.spheres().contains(particle, p, 1.0)) return false;
+  const auto bounds = bounds_of(particle);
   return std::all_of(bounds.begin(), bounds.end(),
                      [&](const DivisionPlanes::Bound& bound) { return bound.half_space.normal.dot(p) >= bound.half_space.offset; });
 }
 
 void PairSeparation::append_closest_contacts(const Points& before, std::vector<Contact>& contacts) {
-  Implementation& self = *implementation_;
-  const auto is_constrained = [&](Index i) { return std::binary_search(self.constrained.begin(), self.constrained.end(), i); };
-  for (const ContactStencil& pair : self.list.pairs()) {
+  const auto is_constrained = [&](Index i) { return std::binary_search(constrained_.begin(), constrained_.end(), i); };
+  for (const ContactStencil& pair : list_.pairs()) {
     const std::span particles(pair.particles.data(), static_cast<std::size_t>(pair.count()));
-    const bool within_a_body = self.body_at(particles.front()) == self.body_at(particles.back());
+    const bool within_a_body = body_at(particles.front()) == body_at(particles.back());
     if (within_a_body || std::ranges::none_of(particles, is_constrained)) continue;
     if (const auto contact = closest_contact(pair, before)) contacts.push_back(*contact);
   }

@@ -5,11 +5,10 @@
 #pragma once
 
 #include "collision/core/contact.h"
-#include "collision/impact_zones/motion_groups.h"
-#include "collision/safe_regions/safe_region.h"
+#include "collision/impact_zones/division_planes.h"
+#include "collision/pairs/neighbour_list.h"
 #include "collision/surface/collision_surface.h"
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,9 +19,6 @@ class PairSeparation {
   /// Finds contacts up to `margin` [m] beyond their gap. Elements of a body that are near each other at `rest` [m], 3 x n, may stay
   /// as near. Keeps a reference to the surface.
   PairSeparation(const CollisionSurface& surface, const Points& rest, double margin);
-  ~PairSeparation();
-  PairSeparation(PairSeparation&&) noexcept;
-  PairSeparation& operator=(PairSeparation&&) noexcept;
 
   /// Begins a step from `before` [m], 3 x n, where nothing crosses, to expected positions `after`. Appends the contacts of the
   /// step: their gap is the mean of the two thicknesses, but at most `most_gap`.
@@ -71,8 +67,17 @@ class PairSeparation {
   void append_closest_contacts(const Points& before, std::vector<Contact>& contacts);
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  [[nodiscard]] std::span<const DivisionPlanes::Bound> bounds_of(Index particle) const;
+  [[nodiscard]] Index body_at(Index particle) const;
+
+  const CollisionSurface& surface_;
+  NeighbourList list_;
+  Points ends_;
+  std::vector<Index> constrained_;  ///< ascending
+  std::vector<Index> passing_;      ///< ascending
+  std::vector<DivisionPlanes::Bound> bounds_;
+  std::vector<Index> anchored_;
+  bool rotated_ = false;  ///< pairs may have rotated without their normals
 };
 
 }  // namespace sprung

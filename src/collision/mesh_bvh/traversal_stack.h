@@ -1,15 +1,41 @@
-// The stack of a tree traversal: in the object itself for trees of usual depth, on the heap for very deep ones.
+// For traversals of a mesh BVH: boxes in single precision, rounded outward, and a stack, which is in the object itself for trees of
+// usual depth, on the heap for very deep ones.
 #pragma once
 
 #include "base/simd.h"
+#include "base/types.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
 namespace sprung {
+
+/// A float above or below the value, by one or two roundings; near 0 by the smallest normal float.
+[[nodiscard]] inline float float_above(double value) {
+  const auto nearest = static_cast<float>(value);
+  return nearest + (std::abs(nearest) * 0x1p-23F + std::numeric_limits<float>::min());
+}
+[[nodiscard]] inline float float_below(double value) { return -float_above(-value); }
+
+struct FloatBox {
+  float min[3];
+  float max[3];
+};
+
+/// A box that contains `box`.
+[[nodiscard]] inline FloatBox float_box(const Box3& box) {
+  FloatBox rounded;
+  for (int axis = 0; axis < 3; ++axis) {
+    rounded.min[axis] = float_below(box.min()[axis]);
+    rounded.max[axis] = float_above(box.max()[axis]);
+  }
+  return rounded;
+}
 
 /// A node (>= 0) or block (~block) to visit, and a lower bound of its distance, which may exclude it by then.
 struct TraversalEntry {

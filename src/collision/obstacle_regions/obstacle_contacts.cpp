@@ -87,7 +87,7 @@ void ObstacleSafeRegions::append_particle_contacts(Index p, PatchSafeRegions& re
     const Vector3 from = paths.from.col(i);
     const Vector3 to = paths.to.col(i);
     if (!from.allFinite() || !to.allFinite()) continue;
-    const auto contact = find_contact(paths.obstacles, k, {i, from, to, surface_.thickness[i], margin}, regions.memory(slot));
+    const auto contact = find_contact(paths.obstacles, k, {i, from, to, surface_.thickness[i], margin}, &regions.memory(slot));
     if (contact) patch.contacts.push_back(*contact);
   }
 }

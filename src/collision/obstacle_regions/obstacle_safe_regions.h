@@ -3,9 +3,9 @@
 
 #include "collision/core/contact.h"
 #include "collision/obstacle_regions/kinematic_anchor.h"
+#include "collision/obstacle_regions/patch_paths.h"
 #include "collision/obstacle_regions/patch_safe_regions.h"
 #include "collision/obstacle_regions/permitted_crossing.h"
-#include "collision/obstacle_regions/step_paths.h"
 #include "collision/obstacles/obstacle_frame.h"
 #include "collision/surface/collision_surface.h"
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "collision/core/sphere_set.h"
-#include "collision/obstacle_regions/patch_topology.h"
-#include "collision/obstacle_regions/step_paths.h"
+#include "collision/obstacle_regions/patch_paths.h"
 #include "collision/safe_regions/safe_region.h"
 #include "collision/shapes/obstacle_shape.h"
 

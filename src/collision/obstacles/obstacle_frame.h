@@ -135,11 +135,8 @@ struct VertexPath {
   double margin = 0.0;     ///< contacts are detected up to max(gap, clearance) + margin [m]
 };
 
-/// See ObstacleFrame::contacts.
-[[nodiscard]] std::optional<Contact> find_contact(const ObstacleFrame& frame, Index obstacle, const VertexPath& path);
-
-/// As above. Reuses `memory`, the result of the particle's last search, in the obstacle's frame.
+/// See ObstacleFrame::contacts. Reuses `memory`, the result of the particle's last search in the obstacle's frame, if it is given.
 [[nodiscard]] std::optional<Contact> find_contact(const ObstacleFrame& frame, Index obstacle, const VertexPath& path,
-                                                  SurfaceMemory& memory);
+                                                  SurfaceMemory* memory = nullptr);
 
 }  // namespace sprung

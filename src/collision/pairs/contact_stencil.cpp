@@ -1,6 +1,6 @@
 #include "collision/pairs/contact_stencil.h"
 
-#include "collision/safe_regions/triangle_separating_plane.h"
+#include "collision/safe_regions/safe_region.h"
 #include "geometry/queries/closest_pair.h"
 
 #include <cmath>

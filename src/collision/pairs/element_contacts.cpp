@@ -1,6 +1,6 @@
 #include "collision/pairs/element_contacts.h"
 
-#include "base/parallel.h"
+#include "collision/core/block_bounds.h"
 #include "collision/core/contact.h"
 
 #include <algorithm>
@@ -237,13 +237,11 @@ void append_self_contacts(const CollisionSurface& surface, const SurfaceTopology
                           std::vector<Contact>& contacts) {
   const ElementContacts finder(surface, features, before, after);
   const auto count = static_cast<Index>(candidates.size());
-  std::vector<std::vector<Contact>> batches(static_cast<std::size_t>((count + kCandidatesPerTask - 1) / kCandidatesPerTask));
-  parallel_chunks(count, kCandidatesPerTask, [&](Index begin, Index end) {
-    for (Index k = begin; k < end; ++k) {
-      finder.append(candidates[static_cast<std::size_t>(k)], batches[static_cast<std::size_t>(begin / kCandidatesPerTask)]);
-    }
-  });
-  for (const std::vector<Contact>& batch : batches) contacts.insert(contacts.end(), batch.begin(), batch.end());
+  const auto found =
+      collect_from_chunks<Contact>(count, kCandidatesPerTask, [&](Index begin, Index end, std::vector<Contact>& batch) {
+        for (Index k = begin; k < end; ++k) finder.append(candidates[static_cast<std::size_t>(k)], batch);
+      });
+  contacts.insert(contacts.end(), found.begin(), found.end());
 }
 
 }  // namespace sprung

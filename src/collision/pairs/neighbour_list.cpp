@@ -1,6 +1,7 @@
 #include "collision/pairs/neighbour_list.h"
 
 #include "base/parallel.h"
+#include "collision/core/block_bounds.h"
 #include "collision/element_bvh/normal_cone_test.h"
 
 #include <algorithm>
@@ -107,16 +108,11 @@ void NeighbourList::follow(const Points& before, const Points& ends) { renew(fin
 
 std::vector<Index> NeighbourList::find_leaving(const Points& ends, double time) const {
   const auto count = static_cast<Index>(watched_.size());
-  std::vector<std::vector<Index>> batches(static_cast<std::size_t>((count + kParticlesPerTask - 1) / kParticlesPerTask));
-  parallel_chunks(count, kParticlesPerTask, [&](Index begin, Index end) {
-    std::vector<Index>& batch = batches[static_cast<std::size_t>(begin / kParticlesPerTask)];
+  return collect_from_chunks<Index>(count, kParticlesPerTask, [&](Index begin, Index end, std::vector<Index>& leaving) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      if (!spheres_.contains(watched_[k], ends.col(watched_[k]), time)) batch.push_back(watched_[k]);
+      if (!spheres_.contains(watched_[k], ends.col(watched_[k]), time)) leaving.push_back(watched_[k]);
     }
   });
-  std::vector<Index> leaving;
-  for (const std::vector<Index>& batch : batches) leaving.insert(leaving.end(), batch.begin(), batch.end());
-  return leaving;
 }
 
 /// The number of steps for which a list made now costs least.
@@ -177,16 +173,15 @@ void NeighbourList::find_pairs(const Points& before) {
   find_corners_of(leaves, times);
   const auto leaf = [&](Index number) { return PositionedLeaf{tree_.leaf(number), corners_[static_cast<std::size_t>(number)]}; };
   const auto count = static_cast<Index>(leaves.size());
-  std::vector<std::vector<ContactStencil>> batches(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
-  parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
+  const auto search = [&](Index begin, Index end, std::vector<ContactStencil>& batch) {
     std::vector<ElementIndexPair> elements;
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       append_pairs(leaf(leaves[k].first), leaf(leaves[k].second), times, elements);
     }
-    std::vector<ContactStencil>& batch = batches[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
     for (const ElementIndexPair& pair : elements) pair_builder_.append_pairs(pair, state, batch);
-  });
-  for (const std::vector<ContactStencil>& batch : batches) pairs_.insert(pairs_.end(), batch.begin(), batch.end());
+  };
+  const auto found = collect_from_chunks<ContactStencil>(count, kLeafPairsPerTask, search);
+  pairs_.insert(pairs_.end(), found.begin(), found.end());
 }
 
 void NeighbourList::find_corners_of(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times) {

@@ -1,6 +1,7 @@
 #include "collision/pairs/proximity_search.h"
 
 #include "base/parallel.h"
+#include "collision/core/block_bounds.h"
 #include "collision/core/contact.h"
 #include "collision/element_bvh/feature_filters.h"
 
@@ -50,9 +51,7 @@ std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBound
   const std::vector<ElementBvh::LeafPair> pairs = tree_.find_pairs(times, largest_gap_ + margin_);
   prepare_sides(pairs, search);
   const auto count = static_cast<Index>(pairs.size());
-  std::vector<std::vector<ContactCandidate>> batches(static_cast<std::size_t>((count + kLeafPairsPerTask - 1) / kLeafPairsPerTask));
-  parallel_chunks(count, kLeafPairsPerTask, [&](Index begin, Index end) {
-    std::vector<ContactCandidate>& batch = batches[static_cast<std::size_t>(begin / kLeafPairsPerTask)];
+  return collect_from_chunks<ContactCandidate>(count, kLeafPairsPerTask, [&](Index begin, Index end, auto& batch) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       const Side& a = sides_[static_cast<std::size_t>(pairs[k].first)];
       const Side& b = sides_[static_cast<std::size_t>(pairs[k].second)];
@@ -62,9 +61,6 @@ std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBound
       append_edges(a, b, near, search, batch);
     }
   });
-  std::vector<ContactCandidate> candidates;
-  for (const std::vector<ContactCandidate>& batch : batches) candidates.insert(candidates.end(), batch.begin(), batch.end());
-  return candidates;
 }
 
 void ProximitySearch::prepare_sides(const std::vector<ElementBvh::LeafPair>& pairs, const Search& search) {

@@ -241,37 +241,25 @@ class SeparationSearch {
   SeparatingPlane best_;
 };
 
-template <class Shape>
-SeparatingPlane search(const Shape& shape, const ElementCorners& element, const Box3& box) {
-  SeparationSearch<Shape> search(shape, element);
-  if (!(lowest(box, search.best().normal) > search.best().height)) search.finish();
-  return search.best();
-}
-
 }  // namespace
 
 double lowest(const Box3& box, const Vector3& normal) {
   return normal.dot(box.center()) - 0.5 * normal.cwiseAbs().dot(box.sizes());
 }
 
-SeparatingPlane separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box) {
-  return search(sphere, element, box);
+template <class Shape>
+SeparatingPlane separation(const Shape& shape, const ElementCorners& element, const Box3& box) {
+  SeparationSearch<Shape> search(shape, element);
+  if (!(lowest(box, search.best().normal) > search.best().height)) search.finish();
+  return search.best();
 }
-SeparatingPlane separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box) {
-  return search(solid, element, box);
-}
-SeparatingPlane separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box) {
-  return search(capsule, element, box);
-}
-SeparatingPlane separation(const CylinderGeometry& cylinder, const ElementCorners& element, const Box3& box) {
-  return search(cylinder, element, box);
-}
-SeparatingPlane separation(const ConeGeometry& cone, const ElementCorners& element, const Box3& box) {
-  return search(cone, element, box);
-}
-SeparatingPlane separation(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const Box3& box) {
-  return search(ellipsoid, element, box);
-}
+
+template SeparatingPlane separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box);
+template SeparatingPlane separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box);
+template SeparatingPlane separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box);
+template SeparatingPlane separation(const CylinderGeometry& cylinder, const ElementCorners& element, const Box3& box);
+template SeparatingPlane separation(const ConeGeometry& cone, const ElementCorners& element, const Box3& box);
+template SeparatingPlane separation(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const Box3& box);
 
 SeparatingPlane separation(const HalfSpaceGeometry& half_space, const ElementCorners& element, const Box3& /*box*/) {
   const int at = lowest_corner(element, half_space.normal);

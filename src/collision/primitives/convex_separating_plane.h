@@ -31,12 +31,8 @@ struct SeparatingPlane {
 /// vanishes, or within the face where its gradient is the normal of the face. Each candidate gives a direction, and the support
 /// point of the shape in this direction proves the gap independently of rounding in the search. GJK (Gilbert, Johnson and Keerthi
 /// 1988) takes directions from differences of nearly equal points, which are inaccurate close to contact.
-[[nodiscard]] SeparatingPlane separation(const SphereGeometry& sphere, const ElementCorners& element, const Box3& box);
-[[nodiscard]] SeparatingPlane separation(const BoxGeometry& solid, const ElementCorners& element, const Box3& box);
-[[nodiscard]] SeparatingPlane separation(const CapsuleGeometry& capsule, const ElementCorners& element, const Box3& box);
-[[nodiscard]] SeparatingPlane separation(const CylinderGeometry& cylinder, const ElementCorners& element, const Box3& box);
-[[nodiscard]] SeparatingPlane separation(const ConeGeometry& cone, const ElementCorners& element, const Box3& box);
-[[nodiscard]] SeparatingPlane separation(const EllipsoidGeometry& ellipsoid, const ElementCorners& element, const Box3& box);
+template <class Shape>
+[[nodiscard]] SeparatingPlane separation(const Shape& shape, const ElementCorners& element, const Box3& box);
 [[nodiscard]] SeparatingPlane separation(const HalfSpaceGeometry& half_space, const ElementCorners& element, const Box3& box);
 
 }  // namespace sprung

@@ -1,7 +1,7 @@
 // Builds a safe region from triangles.
 #pragma once
 
-#include "collision/safe_regions/triangle_separating_plane.h"
+#include "collision/safe_regions/safe_region.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "collision/shapes/mesh_shape.h"
 
 #include "base/error.h"
-#include "collision/mesh_bvh/winding_number.h"
+#include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/safe_regions/mesh_safe_region.h"
 #include "collision/shapes/mesh_validation.h"
 #include "geometry/queries/closest_pair.h"

@@ -1,6 +1,6 @@
 #include "collision/surface/self_intersections.h"
 
-#include "base/parallel.h"
+#include "collision/core/block_bounds.h"
 #include "geometry/queries/simplex_crossing.h"
 
 #include <algorithm>
@@ -116,14 +116,9 @@ std::vector<CrossingElements> find_self_intersections(const CollisionSurface& su
   const auto any = [](const std::vector<char>& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); };
   if (!any(surface.self) && !any(surface.others)) return {};
   const SelfSearch search(surface, positions);
-  std::vector<std::vector<CrossingElements>> results(surface.patches.size());
-  parallel_chunks(static_cast<Index>(results.size()), 1, [&](Index begin, Index end) {
-    for (auto rank = static_cast<std::size_t>(begin); rank < static_cast<std::size_t>(end); ++rank) {
-      search.search(rank, results[rank]);
-    }
-  });
-  std::vector<CrossingElements> all;
-  for (const auto& result : results) all.insert(all.end(), result.begin(), result.end());
+  auto all = collect_from_chunks<CrossingElements>(
+      static_cast<Index>(surface.patches.size()), 1,
+      [&](Index rank, Index, std::vector<CrossingElements>& found) { search.search(static_cast<std::size_t>(rank), found); });
   std::sort(all.begin(), all.end(),
             [](const auto& a, const auto& b) { return std::pair(a.first, a.second) < std::pair(b.first, b.second); });
   return all;

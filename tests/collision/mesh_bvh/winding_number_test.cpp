@@ -1,4 +1,4 @@
-#include "collision/mesh_bvh/winding_number.h"
+#include "collision/mesh_bvh/mesh_bvh.h"
 
 #include "collision/sample_meshes.h"
 #include "collision/shapes/obstacle_shape.h"

@@ -1,4 +1,4 @@
-#include "collision/obstacle_regions/patch_topology.h"
+#include "collision/obstacle_regions/patch_paths.h"
 
 #include <algorithm>
 
