@@ -2,7 +2,6 @@
 
 #include "base/parallel.h"
 #include "collision/core/block_bounds.h"
-#include "collision/core/spatial_partition.h"
 #include "geometry/mesh/triangle_mesh.h"
 
 #include <algorithm>

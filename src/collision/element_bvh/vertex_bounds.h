@@ -1,10 +1,12 @@
 // Moving bounding spheres of the particles: the skin of the neighbour list.
 //
 // Elements whose spheres stay apart for many steps need no check in any of them. A sphere moves at constant velocity until its
-// particle leaves it, so that a body in free flight keeps its spheres at any speed.
+// particle leaves it, so that a body in free flight keeps its spheres at any speed. Fans of triangles that stay flat while their
+// corners are in their spheres cannot cross themselves (normal-cone test).
 #pragma once
 
 #include "base/types.h"
+#include "collision/surface/surface_topology.h"
 
 #include <vector>
 
@@ -42,5 +44,10 @@ class VertexBounds {
   Points center_;
   Points motion_;
 };
+
+/// Whether the triangles around a particle cannot cross each other for `horizon` [steps] from now while their corners stay within
+/// their spheres. That is so if all triangles keep facing one direction and surround the particle less than once or, in a closed
+/// fan, exactly once (Volino and Magnenat-Thalmann 1994). False where this is not certain.
+[[nodiscard]] bool fan_stays_flat(const SurfaceTopology& features, Index particle, const VertexBounds& spheres, double horizon);
 
 }  // namespace sprung

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "collision/core/block_bounds.h"
-#include "collision/element_bvh/normal_cone_test.h"
+#include "collision/element_bvh/vertex_bounds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "collision/surface/collision_surface.h"
 
-#include "collision/core/spatial_partition.h"
+#include "collision/core/block_bounds.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #include "simulation/sleep/sleep_group.h"
 
-#include "collision/core/spatial_partition.h"
+#include "collision/core/block_bounds.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "collision/element_bvh/normal_cone_test.h"
+#include "collision/element_bvh/vertex_bounds.h"
 
 #include <algorithm>
 #include <array>
