@@ -36,33 +36,48 @@ Simulator start(BuiltScene& built) try {
   refuse_start(error, built.weld_remedies);
 }
 
-LoadedScene load(const SceneSource& source) {
-  TextProblems problems;
-  Scene scene = read_scene_text(scene_text(source), source.file, source.overrides, problems);
-  BuiltScene built = build_scene(scene, all_mesh_paths(source.mesh_paths), problems);
-  LoadedScene loaded{.scene = std::move(scene),
-                     .simulator = start(built),
-                     .frames = built.frames,
-                     .largest_stable_step = built.largest_stable_step,
-                     .meshes = std::move(built.meshes),
-                     .sources = std::move(built.sources),
-                     .adjustments = std::move(built.adjustments),
-                     .warnings = {}};
-  add_new(loaded.warnings, built.warnings);
-  add_new(loaded.warnings, loaded.simulator.warnings());
-  return loaded;
+/// Calls `function`; problems without a file get this one.
+template <class Function>
+auto with_file(const std::string& file, const Function& function) try {
+  return function();
+} catch (const InputError& error) {
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems) {
+    if (problem.file.empty()) problem.file = file;
+  }
+  throw InputError(std::move(problems));
 }
 
 }  // namespace
 
 std::string scene_text(const SceneSource& source) { return source.text ? *source.text : read_scene_file(source.file); }
 
-LoadedScene load_scene(const SceneSource& source) try { return load(source); } catch (const InputError& error) {
-  std::vector<Problem> problems = error.problems();
-  for (Problem& problem : problems) {
-    if (problem.file.empty()) problem.file = source.file;
-  }
-  throw InputError(std::move(problems));
+PreparedScene prepare_scene(const SceneSource& source) {
+  return with_file(source.file, [&] {
+    TextProblems problems;
+    Scene scene = read_scene_text(scene_text(source), source.file, source.overrides, problems);
+    BuiltScene built = build_scene(scene, all_mesh_paths(source.mesh_paths), problems);
+    return PreparedScene{.file = source.file, .scene = std::move(scene), .built = std::move(built)};
+  });
 }
+
+LoadedScene start_scene(PreparedScene prepared) {
+  BuiltScene& built = prepared.built;
+  return with_file(prepared.file, [&] {
+    LoadedScene loaded{.scene = std::move(prepared.scene),
+                       .simulator = start(built),
+                       .frames = built.frames,
+                       .largest_stable_step = built.largest_stable_step,
+                       .meshes = std::move(built.meshes),
+                       .sources = std::move(built.sources),
+                       .adjustments = std::move(built.adjustments),
+                       .warnings = {}};
+    add_new(loaded.warnings, built.warnings);
+    add_new(loaded.warnings, loaded.simulator.warnings());
+    return loaded;
+  });
+}
+
+LoadedScene load_scene(const SceneSource& source) { return start_scene(prepare_scene(source)); }
 
 }  // namespace sprung

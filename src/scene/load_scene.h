@@ -32,8 +32,23 @@ struct LoadedScene {
   std::vector<std::string> warnings;        ///< without duplicates
 };
 
+/// A scene that was read and built, without a simulator.
+struct PreparedScene {
+  std::string file;
+  Scene scene;
+  BuiltScene built;
+};
+
 /// Throws FileError if the scene cannot be read, and InputError with every problem, each with its file. Several threads may load
 /// scenes at the same time. Costly: imports meshes, builds bodies, estimates the stable step and checks the start.
 [[nodiscard]] LoadedScene load_scene(const SceneSource& source);
+
+// The same in two parts.
+
+/// Throws FileError if the scene cannot be read, and InputError with every problem of its text, meshes and bodies.
+[[nodiscard]] PreparedScene prepare_scene(const SceneSource& source);
+
+/// Makes the simulator. Throws InputError if the start is refused.
+[[nodiscard]] LoadedScene start_scene(PreparedScene prepared);
 
 }  // namespace sprung

@@ -1,5 +1,6 @@
 #include "simulation/scratch.h"
 
+#include "dynamics/contact/collision_surface_builder.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/model/spring_failure.h"
 #include "simulation/model/force_factory.h"
@@ -10,8 +11,13 @@
 
 namespace sprung {
 
+Structure::Structure(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles)
+    : contacts(network, obstacles), groups(network), divergence(network) {
+  if (settings.perturb) symmetry.emplace(network, settings.seed);
+}
+
 Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
-                     const ObstacleSet& obstacles, const Control& control)
+                     const ObstacleSet& obstacles, const Control& control, Structure& structure)
     : forces(
           network_forces(network, settings, splits_dampers(settings, bounds) ? MaterialDampers::apart : MaterialDampers::within)),
       attachments(network.attachments.empty()
@@ -19,27 +25,24 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
                       : std::optional<Attachments>(std::in_place, network, obstacles, settings.step,
                                                    std::holds_alternative<ImplicitEulerSettings>(settings.integrator))),
       integrator(make_integrator(settings.integrator, network)),
-      constraints(network, settings, steady_acceleration(network, settings), obstacles, *integrator),
+      constraints(network, settings, steady_acceleration(network, settings), structure.contacts, *integrator, !obstacles.empty()),
       pin_paths(network, obstacles.obstacles(), settings.step),
       planner(network, settings, constraints.limit()),
-      divergence(network),
       energy_watch(network, settings, obstacles.obstacles(), forces),
-      groups(network),
-      rest(network, groups, constraints.limit(), settings.gravity),
-      surroundings(network, obstacles, groups, settings.step, settings.gravity) {
-  if (settings.perturb) symmetry.emplace(network, settings.seed);
+      rest(network, structure.groups, constraints.limit(), settings.gravity),
+      surroundings(network, obstacles, structure.groups, settings.step, settings.gravity) {
   if (splits_dampers(settings, bounds)) {
     const double most = most_damping_rate(settings.step);
     integrator->set_dampers(dampers_of_materials(network, most), std::min(most, bounds.material_damping));
   }
-  touched_groups.assign(groups.groups.size(), 0);
-  for (const auto& force : control.forces) note_touched(force->touched());
-  for (const auto& constraint : control.constraints) note_touched(constraint->touched());
+  touched_groups.assign(structure.groups.groups.size(), 0);
+  for (const auto& force : control.forces) note_touched(force->touched(), structure.groups);
+  for (const auto& constraint : control.constraints) note_touched(constraint->touched(), structure.groups);
   add_forces(network, settings, obstacles, control);
   add_constraints(network, control);
 }
 
-void Workspace::note_touched(const std::optional<std::vector<Index>>& particles) {
+void Workspace::note_touched(const std::optional<std::vector<Index>>& particles, const SleepGroups& groups) {
   touches_any = touches_any || !particles;
   for (const Index i : particles.value_or(std::vector<Index>())) touched_groups[groups.group_of[i]] = 1;
 }
@@ -76,14 +79,22 @@ Scratch::Scratch(const Model& model, const Control& control, const SimulationSta
 }
 
 void Scratch::rebuild(const Model& model, const Control& control) {
-  work.emplace(network, settings, model.bounds(), obstacles, control);
+  if (structure) {
+    structure->contacts.set_motions(particle_motions(network));
+  } else {
+    structure.emplace(network, settings, obstacles);
+  }
+  work.emplace(network, settings, model.bounds(), obstacles, control, *structure);
 }
 
 bool Scratch::follow(const Model& model, const Control& control, const SimulationState& state) {
   const bool tears = state.springs.broken != broken_;
   const bool changes = tears || state.activity != network.activity || !work;
   if (changes) work.reset();  // it refers to the network
-  if (tears) tear_network(model, state);
+  if (tears) {
+    structure.reset();
+    tear_network(model, state);
+  }
   if (tears || state.steering != steering_) steer(model, state);
   if (changes) set_activity(state.activity, network);
   copy_rest_lengths(state);

@@ -23,11 +23,21 @@
 
 namespace sprung {
 
-/// The objects that make a step. All follow from the present network, the settings, the obstacles and the control.
+/// What follows from the springs that are left, whatever holds or moves particles.
+struct Structure {
+  Structure(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles);
+
+  ContactProjection contacts;
+  SleepGroups groups;
+  DivergenceCheck divergence;
+  std::optional<SymmetryBreaker> symmetry;  ///< none unless the settings ask for it
+};
+
+/// The other objects that make a step.
 struct Workspace {
-  /// Keeps references to the network, the settings and the obstacles. The bounds are those of the model.
+  /// Keeps references to the network, the settings, the obstacles and the structure. The bounds are those of the model.
   Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
-            const ObstacleSet& obstacles, const Control& control);
+            const ObstacleSet& obstacles, const Control& control, Structure& structure);
 
   Forces forces;
   ContactForce* penalty = nullptr;         ///< null unless contact is by penalty
@@ -35,18 +45,15 @@ struct Workspace {
   std::unique_ptr<Integrator> integrator;
   StepConstraints constraints;
   PinPaths pin_paths;
-  std::optional<SymmetryBreaker> symmetry;  ///< none unless the settings ask for it
   StepPlanner planner;
-  DivergenceCheck divergence;
   EnergyWatch energy_watch;
-  SleepGroups groups;
   RestDetector rest;
   Surroundings surroundings;
   std::vector<char> touched_groups;  ///< whether an added force or constraint touches each sleep group
   bool touches_any = false;          ///< whether an added force or constraint may touch any particle
 
  private:
-  void note_touched(const std::optional<std::vector<Index>>& particles);
+  void note_touched(const std::optional<std::vector<Index>>& particles, const SleepGroups& groups);
   void add_forces(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles,
                   const Control& control);
   void add_constraints(const SpringNetwork& network, const Control& control);
@@ -70,9 +77,10 @@ struct Scratch {
   ObstacleSet obstacles;            ///< of the present
   bool conditions_changed = false;  ///< since the last step
   std::vector<Index> springs_left;  ///< the numbers in the model of its springs, ascending
-  std::optional<Workspace> work;    ///< none only while it is made
-  SimulationState begin;            ///< of the step
-  SimulationState best;             ///< the end of its best attempt, while others are made
+  std::optional<Structure> structure;
+  std::optional<Workspace> work;  ///< like the structure, none only while it is made
+  SimulationState begin;          ///< of the step
+  SimulationState best;           ///< the end of its best attempt, while others are made
 
  private:
   void tear_network(const Model& model, const SimulationState& state);

@@ -250,7 +250,7 @@ void Simulator::restore(const SimulationState& state) {
   const Control& control = implementation_->control;
   check_state({.model = *model(),
                .control = control,
-               .sleep_groups = work.groups.count(),
+               .sleep_groups = implementation_->scratch->structure->groups.count(),
                .can_collide = work.constraints.contacts().can_collide()},
               state);
   implementation_->stepper().restore(state);

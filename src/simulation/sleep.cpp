@@ -9,7 +9,7 @@ bool Stepper::sleeps(Index group) const { return network().is_asleep(groups().gr
 
 /// Whether it has particles that are not pinned, though they may sleep.
 bool Stepper::is_free(Index group) const {
-  return sleeps(group) || std::ranges::any_of(groups().groups[group].particles, [&](Index i) { return !network().is_pinned(i); });
+  return sleeps(group) || std::ranges::any_of(groups().groups[group].particles, [&](Index i) { return !network().is_fixed(i); });
 }
 
 std::vector<char> Stepper::sleeping_groups() const {
@@ -108,7 +108,7 @@ std::vector<Index> Stepper::steady_groups(const std::vector<char>& bodies) const
   }
   std::vector<Index> steady;
   for (const std::vector<ContactNormal>& of_body : contacts) {
-    if (work().symmetry && work().symmetry->has_standing(of_body, state_.x)) continue;
+    if (structure().symmetry && structure().symmetry->has_standing(of_body, state_.x)) continue;
     for (const ContactNormal& contact : of_body) steady.push_back(groups().group_of[contact.particle]);
   }
   return steady;

@@ -165,8 +165,8 @@ StepTrial Stepper::make_trial(const StepPlan& plan) {
 /// What changes between two steps, at the begin of each attempt.
 void Stepper::prepare_step() {
   update_attachments();
-  if (work().symmetry && constraints().contacts().can_collide() && work().symmetry->may_push(state_.x)) {
-    work().symmetry->push(contact_normals(), dt(), integrator(), state_);
+  if (structure().symmetry && constraints().contacts().can_collide() && structure().symmetry->may_push(state_.x)) {
+    structure().symmetry->push(contact_normals(), dt(), integrator(), state_);
   }
 }
 
@@ -247,7 +247,7 @@ void Stepper::move_pins(double time) {
   EnergyWatch::note_pin(work().pin_paths.move(time, dt(), state_), state_.energy);
   if (!state_.impulses.on()) return;
   for (Index i = 0; i < network().particle_count(); ++i) {
-    if (network().is_pinned(i)) record_gain(i, v_before.col(i));
+    if (network().is_fixed(i)) record_gain(i, v_before.col(i));
   }
 }
 
@@ -280,10 +280,10 @@ void Stepper::note_contacts() {
 }
 
 void Stepper::check_state() {
-  if (const auto failure = work().divergence.not_finite(state_, constraints().positions_before(state_))) fail(*failure);
+  if (const auto failure = structure().divergence.not_finite(state_, constraints().positions_before(state_))) fail(*failure);
   const Index check_interval = 1 + network().springs.count() / kSpringsCheckedPerStep;
   if (state_.step % check_interval == 0) {
-    if (const auto failure = work().divergence.overstretched(state_.x)) fail(*failure);
+    if (const auto failure = structure().divergence.overstretched(state_.x)) fail(*failure);
   }
   if (state_.step > 1 && state_.step % (kStepsPerEnergy * check_interval) != 0) return;
   if (control_.adds_any()) return;
@@ -296,7 +296,7 @@ void Stepper::check_state() {
 void Stepper::check_energy(const Energies& now) const {
   const auto explosion = work().energy_watch.explosion(now, state_.energy);
   if (!explosion) return;
-  StepFailure failure = work().divergence.fastest(state_);
+  StepFailure failure = structure().divergence.fastest(state_);
   failure.cause = *explosion + (failure.cause.empty() ? "" : "; " + failure.cause);
   fail(std::move(failure));
 }
@@ -316,7 +316,7 @@ void Stepper::fail(StepFailure failure) const {
 }
 
 void Stepper::check() const {
-  if (const auto failure = work().divergence.overstretched(state_.x)) fail(*failure);
+  if (const auto failure = structure().divergence.overstretched(state_.x)) fail(*failure);
   if (!control_.adds_any()) check_energy(energies());
 }
 

@@ -109,9 +109,10 @@ class Stepper {
   [[nodiscard]] const SimulatorSettings& settings() const { return scratch_.settings; }
   [[nodiscard]] const ObstacleSet& obstacles() const { return scratch_.obstacles; }
   [[nodiscard]] Workspace& work() const { return *scratch_.work; }
+  [[nodiscard]] Structure& structure() const { return *scratch_.structure; }
   [[nodiscard]] Integrator& integrator() const { return *work().integrator; }
   [[nodiscard]] StepConstraints& constraints() const { return work().constraints; }
-  [[nodiscard]] const SleepGroups& groups() const { return work().groups; }
+  [[nodiscard]] const SleepGroups& groups() const { return structure().groups; }
 
   const Model& model_;
   const Control& control_;

@@ -140,7 +140,7 @@ void Stepper::change_sleep(const BeforeTransition& before) {
       state_.rest.histories[groups().groups.size() + groups().groups[group].body] = {};
     }
     state_.v.col(i).setZero();
-    if (!network().is_pinned(i)) integrator().velocity_changed(state_, i, before.dt);
+    if (!network().is_fixed(i)) integrator().velocity_changed(state_, i, before.dt);
   }
 }
 

@@ -79,28 +79,42 @@ bool LiveRun::change(const std::vector<std::string>& overrides) {
     std::erase_if(source.overrides, [&](const std::string& earlier) { return is_replaced(earlier, key_of(change)); });
     source.overrides.push_back(change);
   }
-  LoadedScene changed = load_scene(source);
-  source_ = std::move(source);
+  PreparedScene changed = prepare_scene(source);
   const bool live = std::ranges::all_of(overrides, [](const std::string& change) { return is_live(key_of(change)); });
-  if (!failure_ && live && continue_with(changed)) return true;
-  loaded_ = std::move(changed);
-  forget_interaction();
-  return false;
+  const bool continues = !failure_ && live && continue_with(changed, overrides);
+  if (!continues) {
+    loaded_ = start_scene(std::move(changed));
+    forget_interaction();
+  }
+  source_ = std::move(source);
+  return continues;
 }
 
 /// A simulator refuses what it cannot take over: then the changed scene begins anew.
-bool LiveRun::continue_with(LoadedScene& changed) try {
+bool LiveRun::continue_with(const PreparedScene& changed, const std::vector<std::string>& overrides) try {
   Simulator& simulator = loaded_.simulator;
-  const std::vector<Obstacle>& obstacles = changed.simulator.obstacles();
-  simulator.continue_with(changed.simulator.model()->network(), with_steps_of(simulator.settings(), changed.simulator.settings()));
-  for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    if (obstacles[k].material != simulator.obstacles()[k].material) {
-      simulator.set_obstacle_material(k, obstacles[k].material);
+  const BuiltScene& built = changed.built;
+  const auto all_change = [&](const auto& names) {
+    return std::ranges::all_of(overrides, [&](const std::string& change) { return names(names_of(key_of(change))); });
+  };
+  if (all_change([](const auto& names) { return names[0] == "gravity"; })) {
+    simulator.set_gravity(built.settings.gravity);
+  } else if (all_change([](const auto& names) { return names[0] == "air" && names.size() > 1 && names[1] != "surface"; })) {
+    simulator.set_air(built.settings.air_drag, built.settings.wind);
+  } else if (!all_change([](const auto& names) { return names[0] == "obstacles"; })) {
+    simulator.continue_with(built.network, with_steps_of(simulator.settings(), built.settings));
+  }
+  for (std::size_t k = 0; k < built.obstacles.size(); ++k) {
+    if (built.obstacles[k].material != simulator.obstacles()[k].material) {
+      simulator.set_obstacle_material(k, built.obstacles[k].material);
     }
   }
-  loaded_.scene = std::move(changed.scene);
-  loaded_.largest_stable_step = changed.largest_stable_step;
-  loaded_.warnings = std::move(changed.warnings);
+  loaded_.scene = changed.scene;
+  loaded_.largest_stable_step = built.largest_stable_step;
+  loaded_.warnings = built.warnings;
+  for (const std::string& warning : simulator.warnings()) {
+    if (std::ranges::find(loaded_.warnings, warning) == loaded_.warnings.end()) loaded_.warnings.push_back(warning);
+  }
   return true;
 } catch (const InputError&) {
   return false;

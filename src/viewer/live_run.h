@@ -56,7 +56,7 @@ class LiveRun {
   [[nodiscard]] std::uint32_t frame() const;
 
  private:
-  bool continue_with(LoadedScene& changed);
+  bool continue_with(const PreparedScene& changed, const std::vector<std::string>& overrides);
   void forget_interaction();
   [[nodiscard]] bool may_change(Index particle) const;
 

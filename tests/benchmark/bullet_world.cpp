@@ -19,7 +19,7 @@ std::unique_ptr<btSoftBody> BulletWorld::make_body(const SpringNetwork& network)
   std::vector<btScalar> masses;
   for (Index i = 0; i < network.particle_count(); ++i) {
     positions.push_back(scaled(Vector3(network.positions.col(i))));
-    masses.push_back(network.is_pinned(i) ? 0 : static_cast<btScalar>(network.masses[i]));
+    masses.push_back(network.is_fixed(i) ? 0 : static_cast<btScalar>(network.masses[i]));
   }
   auto body = std::make_unique<btSoftBody>(&dynamics.getWorldInfo(), network.particle_count(), positions.data(), masses.data());
   for (Index s = 0; s < network.springs.count(); ++s) body->appendLink(network.springs.first[s], network.springs.second[s]);

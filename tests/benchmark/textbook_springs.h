@@ -63,7 +63,7 @@ class Network {
     for (Index i = 0; i < network.particle_count(); ++i) {
       masses.push_back(std::make_unique<Mass>());
       masses.back()->mass = network.masses[i];
-      masses.back()->pinned = network.is_pinned(i);
+      masses.back()->pinned = network.is_fixed(i);
       masses.back()->position = network.positions.col(i);
       masses.back()->velocity = network.velocities.col(i);
     }

@@ -39,8 +39,8 @@ TEST(NetworkBuilder, TwoParticlesAndASpringMakeANetwork) {
   EXPECT_EQ(network.masses, Eigen::Vector2d(2, 4));
   EXPECT_EQ(network.inverse_masses, Eigen::Vector2d(0, 0.25));
   EXPECT_EQ(network.drag_areas, Eigen::Vector2d(1, 1));
-  EXPECT_TRUE(network.is_pinned(a));
-  EXPECT_FALSE(network.is_pinned(b));
+  EXPECT_TRUE(network.is_fixed(a));
+  EXPECT_FALSE(network.is_fixed(b));
   EXPECT_EQ(network.springs.first[0], a) << "the lower index comes first";
   EXPECT_EQ(network.springs.second[0], b);
   EXPECT_EQ(network.springs.stiffness[0], 10.0);

@@ -97,7 +97,7 @@ TEST_P(Pins, APinBeginsWhereAnotherEnds) {
   EXPECT_EQ(simulator.positions(), where);
   EXPECT_EQ(simulator.state().v, Points::Zero(3, 1));
   simulator.step();
-  EXPECT_FALSE(simulator.network().is_pinned(0));
+  EXPECT_FALSE(simulator.network().is_fixed(0));
 }
 
 Obstacle turning_ball() {

@@ -116,7 +116,7 @@ TEST(Simulator, AStepThatIsStoppedChangesNothing) {
   EXPECT_THROW(simulator.step(), StoppedError);
   expect_equal(simulator.state(), begin);
   EXPECT_EQ(simulator.network().springs.count(), 1);
-  EXPECT_FALSE(simulator.network().is_pinned(later));
+  EXPECT_FALSE(simulator.network().is_fixed(later));
   simulator.step();
   EXPECT_EQ(simulator.network().springs.count(), 0);
 }

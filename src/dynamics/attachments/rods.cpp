@@ -93,7 +93,7 @@ double Rods::project(std::size_t number, const Points& before, Points& positions
   for (std::size_t k = 0; k < rod.ends.particles().size(); ++k) {
     const Index particle = rod.ends.particles()[k];
     positions.col(particle) += rod.ends.weight(k) * network_.inverse_masses[particle] * push;
-    if (recorder().on() && network_.is_pinned(particle)) recorder().add_to_pinned(particle, rod.ends.weight(k) * push);
+    if (recorder().on() && network_.is_fixed(particle)) recorder().add_to_pinned(particle, rod.ends.weight(k) * push);
   }
   pushes_[number] += push;
   return violation(rod, difference);

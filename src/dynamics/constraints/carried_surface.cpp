@@ -73,10 +73,10 @@ double CarriedSurface::project(const Vertex& vertex, Points& positions) const {
 
 /// `multiplier` [kg m] is the momentum that the projection gives to the corners, minus that of the particle.
 void CarriedSurface::record_pinned(const Vertex& vertex, const Vector3& multiplier) const {
-  if (network_.is_pinned(vertex.particle)) recorder().add_to_pinned(vertex.particle, -multiplier);
+  if (network_.is_fixed(vertex.particle)) recorder().add_to_pinned(vertex.particle, -multiplier);
   for (std::size_t c = 0; c < vertex.point.corners.size(); ++c) {
     const Index corner = vertex.point.corners[c];
-    if (network_.is_pinned(corner)) recorder().add_to_pinned(corner, vertex.point.weights[c] * multiplier);
+    if (network_.is_fixed(corner)) recorder().add_to_pinned(corner, vertex.point.weights[c] * multiplier);
   }
 }
 

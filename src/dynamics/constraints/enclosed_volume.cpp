@@ -46,7 +46,7 @@ double EnclosedVolume::project(const Points& before, Points& positions) const {
         (missing / along) * (directions.array().rowwise() * inverse_masses.array()).matrix();
     for (Index i = 0; recorder().on() && i < body.particle_count; ++i) {
       const Index particle = body.first_particle + i;
-      if (network_.is_pinned(particle)) recorder().add_to_pinned(particle, missing / along * directions.col(i));
+      if (network_.is_fixed(particle)) recorder().add_to_pinned(particle, missing / along * directions.col(i));
     }
   }
   return largest / kTolerance;

@@ -41,12 +41,9 @@ CollisionSurface contact_surface(const SpringNetwork& network) {
 ParticleMotions particle_motions(const SpringNetwork& network) {
   ParticleMotions motions;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    motions.push_back(network.is_pinned(i) ? ParticleMotion::at_rest : ParticleMotion::free);
-  }
-  for (const Pin& pin : network.pins) {
-    for (const Index i : pin.particles) {
-      if (pin.moves() && !network.is_asleep(i)) motions[static_cast<std::size_t>(i)] = ParticleMotion::driven;
-    }
+    const Index pin = network.activity.pin_of[i];
+    const bool is_driven = pin != kNone && network.pins[static_cast<std::size_t>(pin)].moves() && !network.is_asleep(i);
+    motions.push_back(is_driven ? ParticleMotion::driven : network.is_fixed(i) ? ParticleMotion::at_rest : ParticleMotion::free);
   }
   return motions;
 }

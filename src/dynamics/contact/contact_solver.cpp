@@ -267,7 +267,7 @@ void ContactSolver::record(const ContactConstraint<n>& row, const Vector3& moved
   for (std::size_t k = 0; k < n; ++k) mobility += row.weights[k] * row.weights[k] * network_.inverse_masses[row.particles[k]];
   if (mobility == 0.0) return;
   for (std::size_t k = 0; k < n; ++k) {
-    if (network_.is_pinned(row.particles[k])) recorder.add_to_pinned(row.particles[k], row.weights[k] / mobility * moved);
+    if (network_.is_fixed(row.particles[k])) recorder.add_to_pinned(row.particles[k], row.weights[k] / mobility * moved);
   }
 }
 

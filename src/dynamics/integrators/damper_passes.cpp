@@ -57,7 +57,7 @@ void DamperPasses::apply(const Points& x, double dt, SimulationState& state) {
     for (const double length : lengths) {
       sum_forces(dampers_, {.x = x, .v = state.v, .time = time}, total_);
       for_particles(network_, [&](Index i) {
-        if (!network_.is_pinned(i)) {
+        if (!network_.is_fixed(i)) {
           state.v.col(i) += length * network_.inverse_masses[i] * total_.col(i);
         } else if (state.impulses.on()) {
           state.impulses.on_pinned.col(i) += length * total_.col(i);

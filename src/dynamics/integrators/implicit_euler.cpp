@@ -57,7 +57,7 @@ class ImplicitEuler final : public Integrator {
     });
     solved_ = state.x;
     for (Index i = 0; i < network().particle_count(); ++i) {
-      if (network().is_pinned(i)) solved_.col(i) += dt * state.v.col(i);
+      if (network().is_fixed(i)) solved_.col(i) += dt * state.v.col(i);
     }
     for (const auto& force : forces) force->note_solution(solved_);
   }

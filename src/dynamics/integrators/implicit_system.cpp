@@ -15,7 +15,7 @@ constexpr double kConstraintWeight = 1 << 20;
 
 std::vector<bool> pins_of(const SpringNetwork& network) {
   std::vector<bool> pinned;
-  for (Index i = 0; i < network.particle_count(); ++i) pinned.push_back(network.is_pinned(i));
+  for (Index i = 0; i < network.particle_count(); ++i) pinned.push_back(network.is_fixed(i));
   return pinned;
 }
 

@@ -43,7 +43,7 @@ void Integrator::recover_velocities(SimulationState& state, const Forces&, const
 void Integrator::record(const Points& forces, double dt, SimulationState& state) const {
   if (!state.impulses.on()) return;
   for (Index i = 0; i < network_.particle_count(); ++i) {
-    if (network_.is_pinned(i)) state.impulses.on_pinned.col(i) += dt * forces.col(i);
+    if (network_.is_fixed(i)) state.impulses.on_pinned.col(i) += dt * forces.col(i);
   }
 }
 

@@ -39,7 +39,7 @@ void for_particles(const SpringNetwork& network, Body&& body) {
 template <class Body>
 void for_free_particles(const SpringNetwork& network, Body&& body) {
   for_particles(network, [&](Index i) {
-    if (!network.is_pinned(i)) body(i);
+    if (!network.is_fixed(i)) body(i);
   });
 }
 

@@ -19,7 +19,7 @@ std::vector<FreeRun> free_runs(const SpringNetwork& network) {
   constexpr Index kMost = 4096;
   std::vector<FreeRun> runs;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) continue;
+    if (network.is_fixed(i)) continue;
     const bool follows = !runs.empty() && runs.back().begin + runs.back().count == i && runs.back().count < kMost;
     if (follows) {
       ++runs.back().count;
@@ -33,7 +33,7 @@ std::vector<FreeRun> free_runs(const SpringNetwork& network) {
 std::vector<Index> pinned_particles(const SpringNetwork& network) {
   std::vector<Index> pinned;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) pinned.push_back(i);
+    if (network.is_fixed(i)) pinned.push_back(i);
   }
   return pinned;
 }

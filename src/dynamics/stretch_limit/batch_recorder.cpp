@@ -21,7 +21,7 @@ void BatchRecorder::write_to(const ImpulseRecorder& recorder, const Points& posi
     const Index other = shows_first(s) ? batches_.second[s] : batches_.first[s];
     const Vector3 direction = (positions.col(other) - positions.col(shown(s))).stableNormalized();
     recorder.add_to_spring(batches_.spring[s], direction.dot(momenta_.col(s)));
-    if (network_.is_pinned(other)) recorder.add_to_pinned(other, -momenta_.col(s));
+    if (network_.is_fixed(other)) recorder.add_to_pinned(other, -momenta_.col(s));
   }
 }
 

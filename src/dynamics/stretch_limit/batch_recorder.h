@@ -31,7 +31,7 @@ class BatchRecorder {
   void write_to(const ImpulseRecorder& recorder, const Points& positions) const;
 
  private:
-  [[nodiscard]] bool shows_first(Index s) const { return !network_.is_pinned(batches_.first[s]); }
+  [[nodiscard]] bool shows_first(Index s) const { return !network_.is_fixed(batches_.first[s]); }
   [[nodiscard]] Index shown(Index s) const { return shows_first(s) ? batches_.first[s] : batches_.second[s]; }
   void note_ends(const SpringBatches::Batch& batch, const Points& positions);
   void take_momenta(const SpringBatches::Batch& batch, const Points& positions);

@@ -74,11 +74,11 @@ double largest_load(const SpringNetwork& network, const Body& body, const Spring
   for (Index i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
     if (graph.at(i).empty()) continue;
     joined = i;
-    if (network.is_pinned(i)) pins.push_back(i);
+    if (network.is_fixed(i)) pins.push_back(i);
     for (const SpringGraph::Edge& edge : graph.at(i)) {
       const double length = network.springs.rest_length[edge.spring];
       shortest = std::min(shortest, length);
-      if (network.is_pinned(i)) shortest_at_pin = std::min(shortest_at_pin, length);
+      if (network.is_fixed(i)) shortest_at_pin = std::min(shortest_at_pin, length);
     }
   }
   if (joined == kNone) return 0.0;

@@ -105,7 +105,7 @@ class Coarsener {
   /// Whether it has all free particles of the cloth.
   [[nodiscard]] bool is_whole(const StretchComponent& component) const {
     Index free = 0;
-    for (Index i = 0; i < body_.particle_count; ++i) free += network_.is_pinned(body_.first_particle + i) ? 0 : 1;
+    for (Index i = 0; i < body_.particle_count; ++i) free += network_.is_fixed(body_.first_particle + i) ? 0 : 1;
     return columns_ * rows_ == body_.particle_count && component.free_count == free;
   }
 
@@ -115,7 +115,7 @@ class Coarsener {
     bool any = false;
     for (Index y = 0; y < rows_; ++y) {
       for (Index x = 0; x < columns_; ++x) {
-        if (!network_.is_pinned(particle(x, y)) || lies_between_pins(x, y)) continue;
+        if (!network_.is_fixed(particle(x, y)) || lies_between_pins(x, y)) continue;
         any = insert(x, xs_) || any;
         any = insert(y, ys_) || any;
       }
@@ -126,7 +126,7 @@ class Coarsener {
   [[nodiscard]] bool lies_between_pins(Index x, Index y) const {
     const CoarseCloth::Interpolation place = interpolation_at(x, y);
     for (std::size_t k = 0; k < place.points.size(); ++k) {
-      if (place.weights[k] > 0.0 && !network_.is_pinned(coarse_particle(place.points[k]))) return false;
+      if (place.weights[k] > 0.0 && !network_.is_fixed(coarse_particle(place.points[k]))) return false;
     }
     return true;
   }
@@ -151,7 +151,7 @@ class Coarsener {
     point_.assign(static_cast<std::size_t>(count), kNone);
     for (Index q = 0; q < count; ++q) {
       cloth_.particles.push_back(coarse_particle(q));
-      if (network_.is_pinned(cloth_.particles[q])) {
+      if (network_.is_fixed(cloth_.particles[q])) {
         cloth_.pins.push_back(q);
       } else {
         add_point(q);
@@ -193,7 +193,7 @@ class Coarsener {
 
   /// Links between two pins are left out. A pin enters the component with its first link; a pin without links carries no load.
   void join(Index a, Index b, double length, std::vector<std::vector<StretchComponent::Link>>& of_first) {
-    if (network_.is_pinned(cloth_.particles[a]) && network_.is_pinned(cloth_.particles[b])) return;
+    if (network_.is_fixed(cloth_.particles[a]) && network_.is_fixed(cloth_.particles[b])) return;
     for (const Index q : {a, b}) {
       if (point_[q] == kNone) add_point(q);
     }

@@ -42,7 +42,7 @@ class Finder {
   std::vector<StretchComponent> all() {
     std::vector<StretchComponent> found;
     for (Index i = 0; i < network_.particle_count(); ++i) {
-      if (seen_[i] || network_.is_pinned(i)) continue;
+      if (seen_[i] || network_.is_fixed(i)) continue;
       const std::vector<Index> particles = outward_from(i);
       if (std::ranges::none_of(particles, [&](Index p) { return !graph_.at(p).empty(); })) continue;
       found.push_back(component(particles));
@@ -56,7 +56,7 @@ class Finder {
     std::vector<Index> queue{start};
     seen_[start] = true;
     const auto add = [&](Index particle) {
-      if (seen_[particle] || network_.is_pinned(particle)) return;
+      if (seen_[particle] || network_.is_fixed(particle)) return;
       seen_[particle] = true;
       queue.push_back(particle);
     };
@@ -72,7 +72,7 @@ class Finder {
   }
 
   [[nodiscard]] bool hangs_on_pin(Index particle) const {
-    return std::ranges::any_of(graph_.at(particle), [&](const SpringGraph::Edge& edge) { return network_.is_pinned(edge.to); });
+    return std::ranges::any_of(graph_.at(particle), [&](const SpringGraph::Edge& edge) { return network_.is_fixed(edge.to); });
   }
 
   /// The same particles, from the leaves to one that is linked to a pin.

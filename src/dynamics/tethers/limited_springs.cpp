@@ -17,7 +17,7 @@ bool is_measurable(const SpringNetwork& network, const std::vector<SpringKind>& 
 
 bool is_limited(const SpringNetwork& network, const std::vector<SpringKind>& kinds, Index spring) {
   const Springs& springs = network.springs;
-  const bool between_pins = network.is_pinned(springs.first[spring]) && network.is_pinned(springs.second[spring]);
+  const bool between_pins = network.is_fixed(springs.first[spring]) && network.is_fixed(springs.second[spring]);
   return !between_pins && is_measurable(network, kinds, spring);
 }
 

@@ -17,14 +17,14 @@ std::vector<Index> pin_groups(const SpringNetwork& network, const SpringGraph& g
   std::vector<Index> groups(network.particle_count(), kNone);
   Index count = 0;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (!network.is_pinned(i) || groups[i] != kNone) continue;
+    if (!network.is_fixed(i) || groups[i] != kNone) continue;
     std::vector<Index> reached{i};
     groups[i] = count;
     while (!reached.empty()) {
       const Index pin = reached.back();
       reached.pop_back();
       for (const SpringGraph::Edge& edge : graph.at(pin)) {
-        if (!network.is_pinned(edge.to) || groups[edge.to] != kNone) continue;
+        if (!network.is_fixed(edge.to) || groups[edge.to] != kNone) continue;
         groups[edge.to] = count;
         reached.push_back(edge.to);
       }
@@ -45,7 +45,7 @@ class Search {
       : network_(network), graph_(graph), found_(network.particle_count()) {
     const std::vector<Index> groups = pin_groups(network, graph);
     for (Index i = 0; i < network.particle_count(); ++i) {
-      if (network.is_pinned(i)) extend({i, i, groups[i], 0.0});
+      if (network.is_fixed(i)) extend({i, i, groups[i], 0.0});
     }
   }
 
@@ -66,7 +66,7 @@ class Search {
   void extend(const Tether& tether) {
     for (const SpringGraph::Edge& edge : graph_.at(tether.particle)) {
       const Tether next{edge.to, tether.pin, tether.group, tether.length + network_.springs.rest_length[edge.spring]};
-      if (!network_.is_pinned(edge.to) && is_wanted(next)) ahead_.push(next);
+      if (!network_.is_fixed(edge.to) && is_wanted(next)) ahead_.push(next);
     }
   }
 

@@ -33,7 +33,8 @@ struct SpringNetwork {
 
   [[nodiscard]] Index particle_count() const { return static_cast<Index>(masses.size()); }
   /// Whether the particle is pinned or sleeps.
-  [[nodiscard]] bool is_pinned(Index particle) const { return inverse_masses[particle] == 0.0; }
+  [[nodiscard]] bool is_fixed(Index particle) const { return inverse_masses[particle] == 0.0; }
+  [[nodiscard]] bool is_pinned(Index particle) const { return activity.is_pinned(particle); }
   [[nodiscard]] bool is_asleep(Index particle) const { return activity.is_asleep(particle); }
   /// The body of a particle. Requires a particle of the network.
   [[nodiscard]] const Body& body_of(Index particle) const;

@@ -89,7 +89,7 @@ std::optional<StepFailure> DivergenceCheck::overstretched(const Points& position
   if (worst == kNone) return std::nullopt;
   const Index a = springs.first[static_cast<std::size_t>(worst)];
   const Index b = springs.second[static_cast<std::size_t>(worst)];
-  StepFailure failure = blame(network_.is_pinned(a) ? b : a, worst, positions);
+  StepFailure failure = blame(network_.is_fixed(a) ? b : a, worst, positions);
   failure.remedy = has_moving_pin(network_.pins) ? "use more stiffness, a \"stretch_limit\" or slower pins"
                                                  : "use more stiffness or a \"stretch_limit\"";
   return failure;

@@ -57,7 +57,7 @@ void RestDetector::watch(const SpringNetwork& network, const SleepGroups& groups
   for (const SleepGroup& group : groups.groups) {
     Watched& body = bodies_[group.body];
     Watched& watched = groups_.emplace_back(Watched{.body = group.body, .free = {}, .longest = body.longest});
-    std::ranges::copy_if(group.particles, std::back_inserter(watched.free), [&](Index i) { return !network.is_pinned(i); });
+    std::ranges::copy_if(group.particles, std::back_inserter(watched.free), [&](Index i) { return !network.is_fixed(i); });
     body.free.insert(body.free.end(), watched.free.begin(), watched.free.end());
   }
 }

@@ -49,10 +49,10 @@ constexpr double kCorrected = 1.0e-6;
 }  // namespace
 
 StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
-                                 const ObstacleSet& obstacles, Integrator& integrator)
-    : settings_(settings), steady_acceleration_(steady_acceleration), integrator_(integrator), contacts_(network, obstacles) {
+                                 ContactProjection& contacts, Integrator& integrator, bool has_obstacles)
+    : settings_(settings), steady_acceleration_(steady_acceleration), integrator_(integrator), contacts_(contacts) {
   if (!settings.stretch_limit) return;
-  limit_.emplace(network, *settings.stretch_limit, limit_use(network, settings, !obstacles.empty()));
+  limit_.emplace(network, *settings.stretch_limit, limit_use(network, settings, has_obstacles));
 }
 
 void StepConstraints::begin(const SimulationState& state) {

@@ -15,10 +15,10 @@ namespace sprung {
 
 class StepConstraints {
  public:
-  /// Keeps references to the network, the settings, the obstacles and the integrator. `steady_acceleration` [m/s^2] is the
+  /// Keeps references to the network, the settings, the contacts and the integrator. `steady_acceleration` [m/s^2] is the
   /// largest acceleration by gravity and wind.
   StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
-                  const ObstacleSet& obstacles, Integrator& integrator);
+                  ContactProjection& contacts, Integrator& integrator, bool has_obstacles);
 
   /// Stores positions and velocities at the beginning of a step. Call it before forces and pins move the state.
   void begin(const SimulationState& state);
@@ -85,7 +85,7 @@ class StepConstraints {
   double steady_acceleration_;
   Integrator& integrator_;
   std::optional<StretchLimit> limit_;
-  ContactProjection contacts_;
+  ContactProjection& contacts_;
   Constraints constraints_;
   std::shared_ptr<Rods> rods_;  ///< one of them; none without attachments
 

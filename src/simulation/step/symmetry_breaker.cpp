@@ -168,7 +168,7 @@ void SymmetryBreaker::push(const Piece& piece, const Flat& flat, double dt, cons
   std::ranges::sort(ends);
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const Index i : ends) {
-    if (network_.is_pinned(i)) continue;
+    if (network_.is_fixed(i)) continue;
     state.v.col(i) += kPush * piece.mean_length / dt * direction_across(flat, i);
     integrator.velocity_changed(state, i, dt);
   }

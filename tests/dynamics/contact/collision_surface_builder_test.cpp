@@ -1,7 +1,7 @@
 #include "dynamics/contact/collision_surface_builder.h"
 
 #include "dynamics/networks.h"
-#include "network/model/sleeping_particles.h"
+#include "network/model/activity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -34,7 +34,7 @@ Points shaken(ContactProjection& contacts, const ObstacleFrame& obstacles, const
     const Points before = x;
     for (Index i = 0; i < network.particle_count(); ++i) {
       x.col(i).z() -= 0.01;
-      if (!network.is_pinned(i)) x.col(i) += Vector3(within(random), within(random), within(random));
+      if (!network.is_fixed(i)) x.col(i) += Vector3(within(random), within(random), within(random));
     }
     const Points advanced = x;
     const StepMotion motion{before, none, no_slip, advanced, 1.0};

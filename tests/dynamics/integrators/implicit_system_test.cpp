@@ -32,7 +32,7 @@ TEST(ImplicitSystem, SolutionFulfilsTheEquationsOfFreeParticles) {
   derivatives.by_velocity.add_product(y, -dt, left);
   derivatives.by_position.add_product(y, -dt * dt, left);
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) {
+    if (network.is_fixed(i)) {
       EXPECT_EQ(y.col(i), Vector3::Zero());
     } else {
       // The matrix has a condition number of some hundreds.

@@ -256,7 +256,7 @@ SpringNetwork linear_cloth(double damping) {
   network.positions.setZero();
   std::mt19937 random(3);
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (!network.is_pinned(i)) network.positions(0, i) = 1.0e-3 * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
+    if (!network.is_fixed(i)) network.positions(0, i) = 1.0e-3 * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
   }
   return network;
 }

@@ -45,7 +45,7 @@ TEST(SpringBatches, ContainEachSpringOnce) {
     std::multiset<std::pair<Index, Index>> expected;
     for (Index s = 0; s < network.springs.count(); ++s) {
       const std::pair ends{network.springs.first[s], network.springs.second[s]};
-      if (!network.is_pinned(ends.first) || !network.is_pinned(ends.second)) expected.insert(ends);
+      if (!network.is_fixed(ends.first) || !network.is_fixed(ends.second)) expected.insert(ends);
     }
     std::multiset<std::pair<Index, Index>> found;
     for (std::size_t stage = 0; stage + 1 < batches.stage_begin.size(); ++stage) {

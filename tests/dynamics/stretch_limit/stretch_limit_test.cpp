@@ -26,7 +26,7 @@ double excess_by_hand(const SpringNetwork& network, const StretchLimitSettings& 
   const Springs& springs = network.springs;
   for (Index k = 0; k < springs.count(); ++k) {
     if (std::ranges::find(settings.kinds, springs.kind[k]) == settings.kinds.end()) continue;
-    if (network.is_pinned(springs.first[k]) && network.is_pinned(springs.second[k])) continue;
+    if (network.is_fixed(springs.first[k]) && network.is_fixed(springs.second[k])) continue;
     const double relative = length_of(x, springs.first[k], springs.second[k]) / springs.rest_length[k];
     excess = std::max({excess, relative - 1.0 - settings.max_stretch, 1.0 - settings.max_compression - relative});
   }

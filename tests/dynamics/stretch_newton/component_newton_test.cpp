@@ -109,7 +109,7 @@ TEST(ComponentNewton, CarriesTheLoadOfMotion) {
   const double turned = 0.05;
   Points x = network.positions;
   for (Index i = 0; i < x.cols(); ++i) {
-    if (!network.is_pinned(i)) x(2, i) += turned * (network.positions.row(1).maxCoeff() - x(1, i));
+    if (!network.is_fixed(i)) x(2, i) += turned * (network.positions.row(1).maxCoeff() - x(1, i));
   }
   const Points before = network.positions;
   ComponentNewton(component_of(network), settings).solve(before, x, 1.0e-6 * turned);
@@ -301,7 +301,7 @@ class FallingCloth : public ::testing::Test {
     Points target = 2.0 * x_ - before_;
     target.colwise() += push - kFrameFall * Vector3::UnitY();
     for (Index i = 0; i < target.cols(); ++i) {
-      if (network_.is_pinned(i)) target.col(i) = network_.positions.col(i) + pins_at;
+      if (network_.is_fixed(i)) target.col(i) = network_.positions.col(i) + pins_at;
     }
     before_.swap(x_);
     x_ = target;
@@ -346,7 +346,7 @@ TEST_F(FallingCloth, DetectsTheMinimumInOneSolve) {
   for (int n = 0; n < 10; ++n) {
     x_ = displaced(rest, random, 5.0e-9);
     for (Index i = 0; i < x_.cols(); ++i) {
-      if (network_.is_pinned(i)) x_.col(i) = rest.col(i);
+      if (network_.is_fixed(i)) x_.col(i) = rest.col(i);
     }
     before_ = x_;
     EXPECT_EQ(step(), n == 0 ? 1 : 0) << n;
@@ -381,7 +381,7 @@ TEST_F(FallingCloth, LeavesRestWhenForcesRotate) {
   const Points rest = x_;
   ComponentNewton newton(component_of(network_), settings_);
   const auto solves_from_rest = [&](const Vector3& load) {
-    for (Index i = 0; i < x_.cols(); ++i) x_.col(i) = rest.col(i) + (network_.is_pinned(i) ? Vector3(Vector3::Zero()) : load);
+    for (Index i = 0; i < x_.cols(); ++i) x_.col(i) = rest.col(i) + (network_.is_fixed(i) ? Vector3(Vector3::Zero()) : load);
     return newton.solve(rest, x_, kFrameFall).value_or(0);
   };
   solves_from_rest(-kFrameFall * Vector3::UnitY());
@@ -409,7 +409,7 @@ TEST(ComponentNewton, IsInvariantUnderACommonDisplacement) {
     const Vector3 move(10.0, -3.0, 1.0);
     Points x = displaced(1.02 * network.positions, random, 0.01);
     for (Index i = 0; i < x.cols(); ++i) {
-      if (network.is_pinned(i)) x.col(i) = network.positions.col(i);
+      if (network.is_fixed(i)) x.col(i) = network.positions.col(i);
     }
     Points moved = x.colwise() + move;
     const auto solves = newton.solve(network.positions, x, kFall);

@@ -108,7 +108,7 @@ TEST_P(Solvers, ResidualIsTheNegativeGradient) {
 Points target_of_gravity(const SpringNetwork& network, const Points& before, const Points& velocities, double dt) {
   Points target = before;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (!network.is_pinned(i)) target.col(i) += dt * velocities.col(i) - kGravity * dt * dt * Vector3::UnitY();
+    if (!network.is_fixed(i)) target.col(i) += dt * velocities.col(i) - kGravity * dt * dt * Vector3::UnitY();
   }
   return target;
 }
@@ -385,7 +385,7 @@ Points swing(double scale, int threads) {
   for (int step = 0; step < 3; ++step) {
     Points x = before;
     for (Index i = 0; i < network.particle_count(); ++i) {
-      if (!network.is_pinned(i)) x.col(i) += dt * velocities.col(i) - scale * kGravity * dt * dt * Vector3::UnitY();
+      if (!network.is_fixed(i)) x.col(i) += dt * velocities.col(i) - scale * kGravity * dt * dt * Vector3::UnitY();
     }
     newton.solve(before, x, scale * kGravity * dt * dt);
     velocities = (x - before) / dt;

@@ -30,7 +30,7 @@ class Fall {
   std::optional<int> step() {
     Points target = x;
     for (Index i = 0; i < network_.particle_count(); ++i) {
-      if (!network_.is_pinned(i)) target.col(i) += kStep * v.col(i) - kFall * Vector3::UnitY();
+      if (!network_.is_fixed(i)) target.col(i) += kStep * v.col(i) - kFall * Vector3::UnitY();
     }
     const auto solves = solver_.solve(x, target, kFall);
     v = (target - x) / kStep;
@@ -231,7 +231,7 @@ void move_beside(const CoarseCloth& cloth, const SpringNetwork& network, Points&
     v(2, i) = kGravity * kStep;
     for (std::size_t k = 0; k < 4; ++k) {
       const Index q = cloth.particles[cloth.interpolations[n].points[k]];
-      if (!network.is_pinned(q)) v(2, q) -= cloth.interpolations[n].weights[k] * network.masses[i] / network.masses[q] * v(2, i);
+      if (!network.is_fixed(q)) v(2, q) -= cloth.interpolations[n].weights[k] * network.masses[i] / network.masses[q] * v(2, i);
     }
   }
 }

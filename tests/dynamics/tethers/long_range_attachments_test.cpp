@@ -29,7 +29,7 @@ std::vector<double> lengths_from(const SpringNetwork& network, Index pin) {
   std::vector<double> length(network.particle_count(), kFar);
   length[pin] = 0.0;
   const auto relax = [&](Index from, Index to, double rest_length) {
-    if (network.is_pinned(to) || (network.is_pinned(from) && from != pin) || length[from] + rest_length >= length[to]) return false;
+    if (network.is_fixed(to) || (network.is_fixed(from) && from != pin) || length[from] + rest_length >= length[to]) return false;
     length[to] = length[from] + rest_length;
     return true;
   };
@@ -79,7 +79,7 @@ TEST(TetherPaths, AreTheShortestToEachPin) {
   for (const Index pin : {0, 100, 200}) {
     const std::vector<double> expected = lengths_from(network, pin);
     for (Index i = 0; i < network.particle_count(); ++i) {
-      if (network.is_pinned(i) || expected[i] == kFar) {
+      if (network.is_fixed(i) || expected[i] == kFar) {
         EXPECT_EQ(found[pin / 100][i], kFar) << i;
       } else {
         // The tolerance is for sums of at most some hundred lengths below 1, in another order.
@@ -130,7 +130,7 @@ TEST(TetherPaths, AreFewWherePinsAreMany) {
 Points blown_up(const SpringNetwork& network) {
   Points x = 3.0 * network.positions;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) x.col(i) = network.positions.col(i);
+    if (network.is_fixed(i)) x.col(i) = network.positions.col(i);
   }
   return x;
 }
@@ -169,7 +169,7 @@ TEST(LongRangeAttachments, LeaveParticlesWithinReachUnchanged) {
   const SpringNetwork network = make_test_cloth(30, 0.0, 0.0);
   Points x = network.positions;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (!network.is_pinned(i)) x(2, i) = 0.005 * std::sin(i);
+    if (!network.is_fixed(i)) x(2, i) = 0.005 * std::sin(i);
   }
   const Points before = x;
   // The springs of 1/29 m become 4.2 % longer when their ends differ by 0.01 m across.

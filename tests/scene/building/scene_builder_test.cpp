@@ -38,7 +38,7 @@ std::vector<Problem> build_problems(const std::vector<std::string>& changes) {
 std::vector<Index> pinned(const SpringNetwork& network) {
   std::vector<Index> particles;
   for (Index i = 0; i < network.particle_count(); ++i) {
-    if (network.is_pinned(i)) particles.push_back(i);
+    if (network.is_fixed(i)) particles.push_back(i);
   }
   return particles;
 }

@@ -423,12 +423,12 @@ TEST(RestDetector, PinsAndReleasesWakeItOnlyIfTheyChangeSomething) {
   EXPECT_TRUE(sleeps(simulator)) << "one is pinned already, the other is free";
   simulator.release(0);
   EXPECT_FALSE(sleeps(simulator));
-  EXPECT_FALSE(simulator.network().is_pinned(0));
+  EXPECT_FALSE(simulator.network().is_fixed(0));
   run(simulator, 1.0);
   ASSERT_TRUE(sleeps(simulator));
   simulator.pin(5);
   EXPECT_FALSE(sleeps(simulator));
-  EXPECT_TRUE(simulator.network().is_pinned(5));
+  EXPECT_TRUE(simulator.network().is_fixed(5));
 }
 
 TEST(RestDetector, AnExternalForceWakesItAndKeepsItAwake) {
