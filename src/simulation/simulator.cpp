@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "base/problem_list.h"
+#include "geometry/motion/motion_check.h"
 #include "network/model/spring_failure.h"
 #include "simulation/reaction_record.h"
 #include "simulation/state_check.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace sprung {
@@ -88,30 +90,93 @@ void check_entry(const std::string& key, std::size_t number, std::size_t count) 
 
 void check_number(const std::string& key, double number, ProblemList& problems) {
   if (std::isfinite(number) && number >= 0.0) return;
-  problems.add(key, format_number(number, 6), "must be finite and not negative", "");
+  problems.add(key, format_number(number, 6), "must be finite and not negative", "give 0 for none");
 }
 
 void check_pose(const std::string& key, const RigidTransform& pose) {
-  constexpr double kRounding = 1.0e-9;
-  ProblemList problems;
-  const Matrix3 linear = pose.linear();
+  if (is_rigid(pose)) return;
   if (!pose.matrix().allFinite()) {
-    problems.add(key, "", "must be finite", "give a position in m and a rotation");
-  } else if (!linear.isUnitary(kRounding) || linear.determinant() < 0.0) {
-    problems.add(key, "", "must be a rotation and a translation", "give a rotation without scale, shear or reflection");
+    throw InputError({.key = key,
+                      .value = pose.linear().allFinite() ? vector_text(pose.translation()) : "a rotation that is not finite",
+                      .rule = "must be finite",
+                      .remedy = "give a position in m and a rotation"});
   }
-  problems.throw_if_any();
+  throw InputError({.key = key,
+                    .value = "a matrix of determinant " + format_number(pose.linear().determinant(), 6),
+                    .rule = "must be a rotation and a translation",
+                    .remedy = "give a matrix without scale, shear or reflection, whose columns have length 1"});
 }
 
-void check_pin(const SpringNetwork& network, const std::vector<Index>& particles, const std::string& name) {
+/// Bound of the length [m] of the paths of points that are up to `reach` [m] from the origin of a pose, as it moves.
+double travel(const RigidTransform& from, const RigidTransform& to, double reach) {
+  const double angle = Eigen::Quaterniond(from.linear()).angularDistance(Eigen::Quaterniond(to.linear()));
+  return (to.translation() - from.translation()).norm() + angle * reach;
+}
+
+/// The diagonal [m] of the largest of the boxes around each body at the start.
+double largest_size(const SpringNetwork& network) {
+  double largest = 0.0;
+  for (const Body& body : network.bodies) {
+    const auto positions = network.positions.middleCols(body.first_particle, body.particle_count);
+    largest = std::max(largest, (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).norm());
+  }
+  return largest;
+}
+
+/// One step must not stretch a body to more than twice its size.
+void check_travel(const std::string& key, double distance, const SpringNetwork& network) {
+  constexpr double kRounding = 1.0e-9;
+  const double most = largest_size(network);
+  if (most == 0.0 || distance <= (1.0 + kRounding) * most) return;  // without springs nothing is stretched
+  throw InputError({.key = key,
+                    .value = format_number(distance, 6) + " m from the present pose",
+                    .rule = "must be at most " + format_number(most, 6) + " m away in one step, the size of the largest body",
+                    .remedy = "go there in " + format_number(std::ceil(distance / most - kRounding)) + " steps"});
+}
+
+/// The first pose, and those at which pins took particles before `now` [s]: pins move these by what the pose changed since.
+std::vector<TimedPose> poses_of_grips(const SteeredMotion& steered, const std::vector<PinGrip>& grips, double now) {
+  const double first = steered.poses.front().time;
+  std::set<double> times;
+  for (const PinGrip& grip : grips) {
+    if (grip.time > first && grip.time < now) times.insert(grip.time);
+  }
+  const Motion motion{.poses = steered.poses};
+  std::vector<TimedPose> poses{steered.poses.front()};
+  for (const double time : times) poses.push_back({time, motion.pose(steered.poses.front().pose, time)});
+  return poses;
+}
+
+void check_particle(const SpringNetwork& network, Index particle) {
+  if (particle >= 0 && particle < network.particle_count()) return;
+  throw InputError({.key = "particle",
+                    .value = std::to_string(particle),
+                    .rule = "must be the number of a particle; there are " + std::to_string(network.particle_count()),
+                    .remedy = "count particles from 0"});
+}
+
+/// `model` has the pins that no program added.
+void check_pin(const SpringNetwork& model, const std::vector<Index>& particles, const std::string& name) {
+  const std::string key = "pins." + name;
   ProblemList problems;
-  const auto exists = [&](Index i) { return i >= 0 && i < network.particle_count(); };
-  if (particles.empty()) problems.add("pins." + name, "", "must contain at least one particle", "name a particle");
+  const auto exists = [&](Index i) { return i >= 0 && i < model.particle_count(); };
+  if (particles.empty()) problems.add(key, "", "must contain at least one particle", "name a particle");
   problems.require_each(
       particles.size(), [&](std::size_t k) { return exists(particles[k]); },
       [&](std::size_t k) { return std::to_string(particles[k]); },
-      {"pins." + name, "must be the number of a particle; there are " + std::to_string(network.particle_count()),
-       "count particles from 0"});
+      {key, "must be the number of a particle; there are " + std::to_string(model.particle_count()), "count particles from 0"});
+  std::vector<Index> sorted = particles;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) problems.add(key, std::to_string(*twice), "must be named once", "remove the second one");
+  const auto is_its = [&](const auto& named) { return named.name == name; };
+  if (name.empty()) problems.add("pins", "\"\"", "must be a name, which its reaction has too", "name the pin");
+  if (std::ranges::any_of(model.pins, is_its)) {
+    problems.add(key, "", "is the name of a pin of the network already", "choose another name, or move that pin");
+  }
+  if (std::ranges::any_of(model.attachments, is_its)) {
+    problems.add(key, "", "is the name of an attachment already", "choose another name");
+  }
   problems.throw_if_any();
 }
 
@@ -192,9 +257,10 @@ void Simulator::Implementation::steer(std::vector<SteeredMotion> Steering::*list
   const bool is_new = steered == all.end() || steered->number != number;
   if (is_new) steered = all.insert(steered, {.number = number, .poses = {{now, present}}});
   const BeforeTransition before = is_new ? stepper().before_transition() : BeforeTransition();
-  steered->poses.resize(1);
-  if (now > steered->poses[0].time) steered->poses.push_back({now, present});
-  steered->poses.push_back({end, target});
+  std::vector<TimedPose> poses = poses_of_grips(*steered, state.grips, now);
+  if (now > poses.front().time) poses.push_back({now, present});
+  poses.push_back({end, target});
+  steered->poses = std::move(poses);
   if (is_new) {
     stepper().make_transition(before);
   } else {
@@ -350,13 +416,14 @@ void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMateria
 }
 
 std::size_t Simulator::pin(Index particle) {
+  check_particle(network(), particle);
+  if (state().activity.is_pinned(particle)) return static_cast<std::size_t>(state().activity.pin_of[particle]);
   const Body& body = network().body_of(particle);
   return pin({particle}, body.name + ".particles[" + std::to_string(particle - body.first_particle) + "]");
 }
 
 std::size_t Simulator::pin(const std::vector<Index>& particles, const std::string& name) {
-  check_pin(network(), particles, name);
-  if (particles.size() == 1 && state().activity.is_pinned(particles[0])) return state().activity.pin_of[particles[0]];
+  check_pin(model()->network(), particles, name);
   const auto known = std::ranges::find(network().pins, name, &Pin::name);
   const auto number = static_cast<std::size_t>(known - network().pins.begin());
   implementation_->change_awake([&] {
@@ -372,6 +439,7 @@ std::size_t Simulator::pin(const std::vector<Index>& particles, const std::strin
     added.from = time();
     added.origin = state.x(Eigen::all, particles).rowwise().mean();
     std::erase_if(state.steering.pins, [&](const SteeredMotion& steered) { return steered.number == number; });
+    std::ranges::replace(state.activity.pin_of, static_cast<Index>(number), kNone);
     for (const Index i : particles) {
       if (!state.activity.is_pinned(i)) state.activity.pin_of[i] = static_cast<Index>(number);
     }
@@ -381,6 +449,7 @@ std::size_t Simulator::pin(const std::vector<Index>& particles, const std::strin
 }
 
 void Simulator::release(Index particle) {
+  check_particle(network(), particle);
   const Index pin = state().activity.pin_of[particle];
   if (pin == kNone) return;
   Activity activity = state().activity;
@@ -413,17 +482,26 @@ void Simulator::move_pin(std::size_t pin, const RigidTransform& pose) {
   if (moved.obstacle != kNone) {
     const std::string& obstacle = obstacles()[static_cast<std::size_t>(moved.obstacle)].name;
     throw InputError({.key = key,
-                      .value = "",
+                      .value = vector_text(pose.translation()),
                       .rule = "cannot be given: the pin follows the obstacle \"" + obstacle + "\"",
                       .remedy = "move the obstacle"});
   }
   check_pose(key, pose);
+  double reach = 0.0;
+  for (const Index i : held_particles(network(), pin)) {
+    reach = std::max(reach, (state().x.col(i) - present.translation()).norm());
+  }
+  check_travel(key, travel(present, pose, reach), model()->network());
   implementation_->steer(&Steering::pins, pin, present, pose);
 }
 
 void Simulator::move_obstacle(std::size_t obstacle, const RigidTransform& pose) {
   const RigidTransform present = obstacle_pose(obstacle);
-  check_pose("obstacles." + obstacles()[obstacle].name + ".pose", pose);
+  const std::string key = "obstacles." + obstacles()[obstacle].name + ".pose";
+  check_pose(key, pose);
+  const Box3 box = implementation_->scratch->obstacles.shape(static_cast<Index>(obstacle)).bounds();
+  const double reach = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
+  check_travel(key, travel(present, pose, std::isfinite(reach) ? reach : 0.0), model()->network());  // a half-space has no end
   implementation_->steer(&Steering::obstacles, obstacle, present, pose);
 }
 

@@ -101,6 +101,7 @@ class Simulator {
 
   /// Fixes particles where they are, relative to each other; those that are pinned already stay with their pin. The name is that of
   /// the reaction, and a pin of this name that a program added before ends. The pose of the pin is at the mean of the particles.
+  /// Throws InputError also if the name is that of a pin or an attachment of the network.
   std::size_t pin(const std::vector<Index>& particles, const std::string& name);
 
   /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned.
@@ -108,8 +109,10 @@ class Simulator {
 
   // Steering. The next step moves a pin or an obstacle to a pose, on a line and with the shortest rotation; its velocity follows.
   // It then stays there, whatever keyframes it had, until it is moved again. Call it before each step. The first call for a pin or
-  // an obstacle costs about as much as a few steps, others cost little. Throws InputError if the pose is not a rotation and a
-  // translation, or too far.
+  // an obstacle costs about as much as a few steps, others cost little. A step may move no point farther than the largest body is
+  // large, so that it stretches none to more than twice its size: contact follows obstacles that far. Elements that a pin drags
+  // through an obstacle cross it, as ever. Throws InputError if the pose is not a rotation and a translation, or too far; it then
+  // names the distance, and the number of steps to go there in.
 
   /// The rigid motion from the present pose to this one moves the particles of a pin. Not for pins that follow an obstacle.
   void move_pin(std::size_t pin, const RigidTransform& pose);

@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "base/problem_list.h"
+#include "geometry/motion/motion_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,15 +77,19 @@ class StateRules {
     require_each("steering.added_pins", steering.added_pins, [&](const Pin& pin) {
       return std::ranges::all_of(pin.particles, [&](Index i) { return is_particle(i); }) && std::isfinite(pin.from);
     });
-    const auto is_sound = [&](const SteeredMotion& motion, std::size_t count) {
-      return motion.number < count && !motion.poses.empty() && std::ranges::all_of(motion.poses, [](const TimedPose& key) {
-               return std::isfinite(key.time) && key.pose.matrix().allFinite();
-             });
-    };
-    require_each("steering.pins", steering.pins, [&](const SteeredMotion& motion) { return is_sound(motion, pins); });
-    const std::size_t obstacles = owner_.model.obstacles().obstacles().size();
-    require_each("steering.obstacles", steering.obstacles,
-                 [&](const SteeredMotion& motion) { return is_sound(motion, obstacles); });
+    check_steered("steering.pins", steering.pins, pins);
+    check_steered("steering.obstacles", steering.obstacles, owner_.model.obstacles().obstacles().size());
+  }
+
+  void check_steered(const std::string& key, const std::vector<SteeredMotion>& motions, std::size_t count) {
+    const auto not_later = [](const TimedPose& a, const TimedPose& b) { return b.time <= a.time; };
+    require_each(key, motions, [&](const SteeredMotion& motion) {
+      const std::vector<TimedPose>& poses = motion.poses;
+      return motion.number < count && !poses.empty() && std::ranges::adjacent_find(poses, not_later) == poses.end() &&
+             std::ranges::all_of(poses, [](const TimedPose& at) { return std::isfinite(at.time) && is_rigid(at.pose); });
+    });
+    const auto not_higher = [](const SteeredMotion& a, const SteeredMotion& b) { return b.number <= a.number; };
+    require(std::ranges::adjacent_find(motions, not_higher) == motions.end(), key, "", "must be sorted by number");
   }
 
   void check_springs() {

@@ -74,9 +74,7 @@ std::optional<StepReport> Stepper::attempt(PlanReason reason) {
     if (obstacles().moves()) choose_sleepers();
     return StepReport{};
   }
-  if (std::exchange(scratch_.conditions_changed, false) && are_constant(work().forces)) {
-    integrator().resume(state_, work().forces, dt());  // it keeps their sum
-  }
+  if (std::exchange(scratch_.conditions_changed, false)) resume_integrator();
   scratch_.begin = state_;
   has_begun_ = true;
   const bool any_sleeps = !network().activity.asleep.empty();

@@ -90,6 +90,7 @@ class Stepper {
   void change_sleep(const BeforeTransition& before);
   [[nodiscard]] bool change_pins(const BeforeTransition& before);
   void keep_handovers();
+  void resume_integrator();
 
   // Sleep.
   [[nodiscard]] bool may_sleep() const;

@@ -199,7 +199,16 @@ void Stepper::follow_steering() {
 void Stepper::enter() {
   work().pin_paths.register_pins(state_);
   load();
-  integrator().resume(state_, work().forces, dt());
+  resume_integrator();
+}
+
+/// At time 0 the forces determine Verlet's positions one step ago.
+void Stepper::resume_integrator() {
+  if (steps_done(state_) == 0.0) {
+    integrator().start(state_, work().forces, dt());
+  } else {
+    integrator().resume(state_, work().forces, dt());
+  }
 }
 
 }  // namespace sprung

@@ -116,8 +116,9 @@ struct ReactionMemory {
 
 /// A pin or an obstacle that a program moves.
 struct SteeredMotion {
-  std::size_t number = 0;          ///< of the pin or obstacle
-  std::vector<TimedPose> poses{};  ///< when it was first moved, at the begin of the last step in which it moves, and at its end
+  std::size_t number = 0;  ///< of the pin or obstacle
+  /// When it was first moved, when pins took particles since, at the begin of the last step in which it moves, and at its end.
+  std::vector<TimedPose> poses{};
 
   [[nodiscard]] bool operator==(const SteeredMotion&) const = default;
 };

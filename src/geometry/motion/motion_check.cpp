@@ -22,4 +22,10 @@ void check_motion(const std::string& key, const Motion& motion, ProblemList& pro
   if (!motion.spin.allFinite()) problems.add(key + ".spin", vector_text(motion.spin), "must be finite", "give degrees per second");
 }
 
+bool is_rigid(const RigidTransform& pose) {
+  constexpr double kRounding = 1.0e-9;
+  const Matrix3 linear = pose.linear();
+  return pose.matrix().allFinite() && linear.isUnitary(kRounding) && linear.determinant() > 0.0;
+}
+
 }  // namespace sprung

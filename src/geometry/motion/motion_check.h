@@ -12,4 +12,7 @@ namespace sprung {
 /// `key` is the prefix of the keys, such as `pins[0].motion`.
 void check_motion(const std::string& key, const Motion& motion, ProblemList& problems);
 
+/// Whether a pose is finite, and a rotation and a translation but for rounding.
+[[nodiscard]] bool is_rigid(const RigidTransform& pose);
+
 }  // namespace sprung

@@ -123,5 +123,54 @@ TEST(Motion, EqualKeyframesDoNotMove) {
   EXPECT_FALSE(motion.moves());
 }
 
+/// For slerp: two arcus functions, three sines and a few dozen products of numbers up to 3.
+bool nearly_same(const RigidTransform& a, const RigidTransform& b) {
+  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() < 20 * kRounding;
+}
+
+/// From one pose to another between 1 s and 3 s: 1 m along x, and a rotation by 100 degrees about z.
+Motion posed_motion() {
+  RigidTransform begin = placed_at({1, 2, 3}, {0, 0, 20});
+  RigidTransform end = placed_at({2, 2, 3}, {0, 0, 120});
+  return {
+      .keyframes = {{.time = 0.0}, {.time = 1.0, .position = {5, 5, 5}}}, .spin = {0, 0, 7}, .poses = {{1.0, begin}, {3.0, end}}};
+}
+
+TEST(MotionByPoses, IsExactAtItsTimesAndConstantOutside) {
+  const Motion motion = posed_motion();
+  const RigidTransform placed = placed_at({9, 9, 9}, {10, 20, 30});
+  for (const double time : {0.0, 1.0}) EXPECT_EQ(motion.pose(placed, time).matrix(), motion.poses[0].pose.matrix());
+  for (const double time : {3.0, 4.0}) EXPECT_EQ(motion.pose(placed, time).matrix(), motion.poses[1].pose.matrix());
+}
+
+TEST(MotionByPoses, MovesOnALineAndTurnsAtAConstantRate) {
+  const Motion motion = posed_motion();
+  for (const double fraction : {0.25, 0.5, 0.9}) {
+    const RigidTransform expected = placed_at({1 + fraction, 2, 3}, {0, 0, 20 + 100 * fraction});
+    EXPECT_TRUE(nearly_same(motion.pose({}, 1.0 + 2.0 * fraction), expected)) << "fraction " << fraction;
+  }
+}
+
+TEST(MotionByPoses, TurnsTheShorterWay) {
+  const Motion motion{.poses = {{0.0, placed_at({0, 0, 0})}, {1.0, placed_at({0, 0, 0}, {0, 200, 0})}}};
+  EXPECT_TRUE(nearly_same(motion.pose({}, 0.5), placed_at({0, 0, 0}, {0, -80, 0})));
+  EXPECT_NEAR(motion.rotation(0.0, 1.0), 160.0, 1e-6);
+}
+
+// acos of a number near 1 has half of its digits.
+TEST(MotionByPoses, KnowsWhetherHowFarAndHowLongItMoves) {
+  const Motion motion = posed_motion();
+  EXPECT_TRUE(motion.moves());
+  EXPECT_EQ(motion.end(), 3.0);
+  EXPECT_NEAR(motion.rotation(1.0, 3.0), 100.0, 1e-6);
+  EXPECT_NEAR(motion.rotation(2.0, 2.5), 100.0, 1e-6) << "an upper bound";
+  EXPECT_EQ(motion.rotation(3.0, 4.0), 0.0);
+  EXPECT_EQ(motion.rotation(0.0, 1.0), 0.0);
+  Motion still = motion;
+  still.poses[1].pose = still.poses[0].pose;
+  EXPECT_FALSE(still.moves()) << "whatever its keyframes and its spin say";
+  EXPECT_EQ(still.end(), 0.0);
+}
+
 }  // namespace
 }  // namespace sprung
