@@ -101,16 +101,18 @@ void check_pose(const std::string& key, const RigidTransform& pose) {
                       .rule = "must be finite",
                       .remedy = "give a position in m and a rotation"});
   }
+  const Matrix3 linear = pose.linear();
+  const double off = (linear.transpose() * linear - Matrix3::Identity()).norm();
   throw InputError({.key = key,
-                    .value = "a matrix of determinant " + format_number(pose.linear().determinant(), 6),
+                    .value = linear.determinant() < 0.0 ? "a reflection" : "a matrix R with |R^T R - I| = " + format_number(off, 3),
                     .rule = "must be a rotation and a translation",
-                    .remedy = "give a matrix without scale, shear or reflection, whose columns have length 1"});
+                    .remedy = "leave out scale, shear and reflection; the normalized quaternion of R gives a rotation"});
 }
 
 /// Bound of the length [m] of the paths of points that are up to `reach` [m] from the origin of a pose, as it moves.
 double travel(const RigidTransform& from, const RigidTransform& to, double reach) {
   const double angle = Eigen::Quaterniond(from.linear()).angularDistance(Eigen::Quaterniond(to.linear()));
-  return (to.translation() - from.translation()).norm() + angle * reach;
+  return (to.translation() - from.translation()).stableNorm() + angle * reach;
 }
 
 /// The diagonal [m] of the largest of the boxes around each body at the start.

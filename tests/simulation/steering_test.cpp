@@ -608,10 +608,11 @@ TEST(Steering, RefusesWhatItCannotDo) {
        "= [0, nan, 0]: must be finite; give a position"},
       {pose_of([](RigidTransform& pose) { pose.translation().z() = -std::numeric_limits<double>::infinity(); }), "= [0, 0, -inf]"},
       {pose_of([](RigidTransform& pose) { pose.linear()(1, 2) = kNotANumber; }), "= a rotation that is not finite"},
-      {pose_of([](RigidTransform& pose) { pose.linear() *= 2.0; }), "= a matrix of determinant 8: must be a rotation"},
-      {pose_of([](RigidTransform& pose) { pose.linear().setZero(); }), "= a matrix of determinant 0: must be a rotation"},
-      {pose_of([](RigidTransform& pose) { pose.linear()(0, 0) = -1.0; }), "= a matrix of determinant -1: must be a rotation"},
-      {pose_of([](RigidTransform& pose) { pose.linear()(0, 1) = 0.5; }), "= a matrix of determinant 1: must be a rotation"}};
+      {pose_of([](RigidTransform& pose) { pose.linear() *= 2.0; }), "= a matrix R with |R^T R - I| = 5.2: must be a rotation"},
+      {pose_of([](RigidTransform& pose) { pose.linear().setZero(); }), "= a matrix R with |R^T R - I| = 1.73: must be a rotation"},
+      {pose_of([](RigidTransform& pose) { pose.linear()(0, 0) = -1.0; }), "= a reflection: must be a rotation"},
+      {pose_of([](RigidTransform& pose) { pose.linear()(0, 1) = 0.5; }),
+       "= a matrix R with |R^T R - I| = 0.75: must be a rotation"}};
   const SimulationState before = simulator.state();
   for (const auto& [pose, says] : poses) {
     EXPECT_THAT(refusal([&, &its = pose] { simulator.move_pin(0, its); }), HasSubstr("pins.hand.pose " + says));
