@@ -16,7 +16,7 @@ void move(sprung::Simulator& gripper, const Vector3& left, const Vector3& right,
   const auto is_high = [&](sprung::Index i) { return gripper.positions()(1, i) > 0.02; };
   const double end = gripper.time() + seconds;
   while (gripper.time() < end && std::ranges::count_if(gripper.contact_particles(), is_high) < enough) {
-    for (const std::size_t finger : {0, 1}) {
+    for (const std::size_t finger : {0U, 1U}) {
       sprung::RigidTransform pose = gripper.obstacle_pose(finger);
       pose.translation() += kStep * (finger == 0 ? left : right);
       gripper.move_obstacle(finger, pose);

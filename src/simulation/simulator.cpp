@@ -70,15 +70,31 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   problems.throw_if_any();
 }
 
-/// Pins that a program added go on in a model with other pins. Those of the model stand at their keyframes again.
-void keep_added_pins(const std::vector<Index>& pin_of, std::size_t count_before, std::size_t count, SimulationState& state) {
+/// Pins that a program added, and those of the same name and particles that it steers, go on in a model with other pins.
+void keep_pins(const std::vector<Pin>& before, const std::vector<Pin>& after, const std::vector<Index>& pin_of,
+               SimulationState& state) {
   Steering& steering = state.steering;
-  std::erase_if(steering.pins, [&](const SteeredMotion& pin) { return pin.number < count_before; });
-  for (SteeredMotion& pin : steering.pins) pin.number += count - count_before;
+  std::vector<SteeredMotion> kept;
+  for (SteeredMotion& steered : steering.pins) {
+    if (steered.number >= before.size()) {
+      steered.number += after.size() - before.size();
+    } else {
+      const Pin& its = before[steered.number];
+      const auto same = std::ranges::find_if(
+          after, [&](const Pin& pin) { return pin.name == its.name && pin.particles == its.particles && pin.from == its.from; });
+      if (same == after.end()) continue;
+      steered.number = static_cast<std::size_t>(same - after.begin());
+    }
+    kept.push_back(std::move(steered));
+  }
+  std::ranges::sort(kept, {}, &SteeredMotion::number);
+  steering.pins = std::move(kept);
   state.activity.phases.insert(state.activity.phases.end(), steering.added_pins.size(), PinPhase::holding);
   for (std::size_t i = 0; i < pin_of.size(); ++i) {
     const auto pin = static_cast<std::size_t>(pin_of[i]);
-    if (pin_of[i] != kNone && pin >= count_before) state.activity.pin_of[i] = static_cast<Index>(pin + count - count_before);
+    if (pin_of[i] != kNone && pin >= before.size()) {
+      state.activity.pin_of[i] = static_cast<Index>(pin + after.size() - before.size());
+    }
   }
 }
 
@@ -276,7 +292,7 @@ void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) 
   continued.springs = carried_over(model->network(), state.springs, next->network());
   if (!have_same_pins(model->network(), next->network())) {
     continued.activity = all_free(next->network());
-    keep_added_pins(state.activity.pin_of, model->network().pins.size(), next->network().pins.size(), continued);
+    keep_pins(model->network().pins, next->network().pins, state.activity.pin_of, continued);
     change_pins(next->network().pins, due_before(whole_steps(state), model->settings().step), continued.activity);
   }
   auto its_scratch = std::make_unique<Scratch>(*next, control, continued);

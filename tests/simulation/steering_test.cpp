@@ -462,6 +462,31 @@ TEST(AddedPin, GoesOnInAChangedModel) {
   EXPECT_NEAR(simulator.positions()(1, 10), 0.011, 16.0 * kEpsilon);
 }
 
+TEST(MovePin, GoesOnInAModelWithOtherPins) {
+  const SpringNetwork network = rope({hand({0})});
+  Pin foot = hand({10});
+  foot.name = "foot";
+  const SpringNetwork with_foot = rope({foot, hand({0})});
+  Simulator simulator(network, settings_of());
+  const std::size_t added = simulator.pin({5}, "gripper");
+  for (int k = 1; k <= 20; ++k) {
+    simulator.move_pin(0, pose_at({0.0, 0.002 * k, 0.0}));
+    simulator.move_pin(added, shifted(simulator.pin_pose(added), {0.0, 0.001, 0.0}));
+    simulator.step();
+  }
+  const Points positions = simulator.positions();
+  simulator.continue_with(with_foot, simulator.settings());
+  EXPECT_EQ(simulator.positions(), positions);
+  EXPECT_EQ(simulator.pin_pose(1).translation(), Vector3(0.0, 0.04, 0.0));
+  EXPECT_EQ(simulator.network().pins[2].name, "gripper");
+  simulator.move_pin(1, pose_at({0.0, 0.042, 0.0}));
+  simulator.move_pin(2, shifted(simulator.pin_pose(2), {0.0, 0.001, 0.0}));
+  simulator.step();
+  EXPECT_NEAR(simulator.positions()(1, 0), 0.042, 32.0 * kEpsilon);
+  EXPECT_NEAR(simulator.positions()(1, 5), 0.021, 32.0 * kEpsilon);
+  EXPECT_EQ(simulator.positions().col(10), positions.col(10)) << "the new pin takes it where it is";
+}
+
 TEST(AddedPin, MayHoldAllParticles) {
   Simulator simulator(rope({}), settings_of(), {low_ground()});
   std::vector<Index> all;
