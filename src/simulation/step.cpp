@@ -74,7 +74,9 @@ std::optional<StepReport> Stepper::attempt(PlanReason reason) {
     if (obstacles().moves()) choose_sleepers();
     return StepReport{};
   }
-  if (std::exchange(scratch_.conditions_changed, false)) resume_integrator();
+  // Integrators keep the sum of constant forces, and positions before time 0.
+  const bool is_start = steps_done(state_) == 0.0;
+  if (std::exchange(scratch_.conditions_changed, false) && (is_start || are_constant(work().forces))) resume_integrator();
   scratch_.begin = state_;
   has_begun_ = true;
   const bool any_sleeps = !network().activity.asleep.empty();

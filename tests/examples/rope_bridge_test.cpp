@@ -97,8 +97,7 @@ TEST_F(RopeBridge, TheBallRollsOverThemToTheOtherSide) {
       path += moved.norm();
       turned += turn(before, ball);
     }
-    if (std::abs(centre.x()) < 0.1)
-      lowest_under_ball = std::min(lowest_under_ball, run->positions("plank_f", frame).row(1).mean());
+    if (std::abs(centre.x()) < 0.1) lowest_under_ball = std::min(lowest_under_ball, run->positions("plank_f", frame).row(1).mean());
     before = ball;
   }
   EXPECT_GT(before.row(0).mean(), 1.0) << "it reaches the other pier";

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "network/bodies/body_shape.h"
+#include "network/model/spring_network.h"
 
 #include <algorithm>
 #include <string>
@@ -43,6 +44,15 @@ inline std::vector<Pair> pairs(const BodyShape& shape, SpringKind kind) {
   }
   std::sort(result.begin(), result.end());
   return result;
+}
+
+/// Adds a pin that holds its particles.
+inline void hold(SpringNetwork& network, const Pin& pin) {
+  Activity activity = network.activity;
+  for (const Index i : pin.particles) activity.pin_of[i] = static_cast<Index>(network.pins.size());
+  activity.phases.push_back(PinPhase::holding);
+  network.pins.push_back(pin);
+  set_activity(activity, network);
 }
 
 /// Force [N] of the springs across the plane at `position` [m] on the axis if the body is stretched by `strain` along the axis: the

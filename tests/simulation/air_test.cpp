@@ -2,8 +2,8 @@
 #include "base/parallel.h"
 #include "dynamics/forces/gravity_and_drag.h"
 #include "dynamics/forces/surface_air_force.h"
-#include "simulation/scenes.h"
 #include "simulation/model/force_factory.h"
+#include "simulation/scenes.h"
 #include "simulation/step/step_check.h"
 
 #include <gtest/gtest.h>

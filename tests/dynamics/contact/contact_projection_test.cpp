@@ -3,6 +3,7 @@
 #include "dynamics/contact/collision_surface_builder.h"
 #include "dynamics/networks.h"
 #include "dynamics/state/simulation_state.h"
+#include "network/network_helpers.h"
 
 #include <gtest/gtest.h>
 
@@ -53,8 +54,7 @@ TEST(ContactProjection, WithOtherMotionsItIsAsNew) {
   const ObstacleFrame frame(obstacles, 0.0, 0.0);
   ContactProjection contacts(network, obstacles);
   const Points before = shaken(contacts, frame, network, network.positions, 20);
-  network.pins.emplace_back().particles = {0, 40, 161};
-  for (const Index i : network.pins.front().particles) network.inverse_masses[i] = 0.0;
+  testing::hold(network, {.particles = {0, 40, 161}, .motion = {}});
   contacts.set_motions(particle_motions(network));
   ContactProjection fresh(network, obstacles);
   const Points after = shaken(contacts, frame, network, before, 20);

@@ -6,6 +6,7 @@
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "dynamics/tethers/lra_paths.h"
 #include "network/network_builder.h"
+#include "network/network_helpers.h"
 
 #include <gmock/gmock.h>
 
@@ -47,8 +48,7 @@ std::vector<double> lengths_from(const SpringNetwork& network, Index pin) {
 /// A tangle with three pins, apart from each other.
 SpringNetwork pinned_tangle() {
   SpringNetwork network = make_random_network(300, 900);
-  for (const Index pin : {0, 100, 200}) network.inverse_masses[pin] = 0.0;
-  network.pins.push_back({.particles = {0, 100, 200}, .origin = Vector3::Zero(), .motion = {}});
+  testing::hold(network, {.particles = {0, 100, 200}, .motion = {}});
   return network;
 }
 
@@ -123,7 +123,7 @@ TEST(TetherPaths, AreFewWherePinsAreMany) {
   }
   std::vector<Index> pins;
   for (const Tether& tether : find_tethers(builder.build(), kStructural)) pins.push_back(tether.pin);
-  EXPECT_THAT(pins, testing::ElementsAre(6, 7, 8, 9)) << "kMostTethers of them, the nearest";
+  EXPECT_THAT(pins, ::testing::ElementsAre(6, 7, 8, 9)) << "kMostTethers of them, the nearest";
 }
 
 /// Positions scaled up about the origin, far out of reach.
