@@ -295,8 +295,12 @@ void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) 
     keep_pins(model->network().pins, next->network().pins, state.activity.pin_of, continued);
     change_pins(next->network().pins, due_before(whole_steps(state), model->settings().step), continued.activity);
   }
-  auto its_scratch = std::make_unique<Scratch>(*next, control, continued);
-  Stepper(*next, control, continued, *its_scratch).inherit(before, *model);
+  Control with_settings = control;  // the new model's settings have their own gravity and wind
+  with_settings.gravity.reset();
+  with_settings.wind.reset();
+  auto its_scratch = std::make_unique<Scratch>(*next, with_settings, continued);
+  Stepper(*next, with_settings, continued, *its_scratch).inherit(before, *model);
+  control = std::move(with_settings);
   model = std::move(next);
   scratch = std::move(its_scratch);
   state = continued;

@@ -44,7 +44,7 @@ class Stepper {
   void inherit(const BeforeTransition& before, const Model& former);
 
   void wake_all();
-  /// Wakes what sleeps near pins and obstacles that move.
+  /// Wakes the groups near moving pins and obstacles.
   void wake_driven();
   /// Lets pins and obstacles move as `state.steering` now says.
   void follow_steering();

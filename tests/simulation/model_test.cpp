@@ -104,6 +104,22 @@ TEST(Copy, GoesOnAsItsOriginalAndApartFromIt) {
   EXPECT_EQ(copy.settings().gravity, original.settings().gravity);
 }
 
+// set_gravity() and set_air() decide until other settings come.
+TEST(ContinueWith, ReplacesGravityAndWindThatWereSetBefore) {
+  SimulatorSettings settings{.step = 1e-3, .air_drag = 0.1};
+  Simulator simulator(cloth(5, 1.0), settings);
+  simulator.set_gravity(Vector3(1.0, 0.0, 0.0));
+  simulator.set_air(0.1, Wind(Vector3(2.0, 0.0, 0.0)));
+  EXPECT_EQ(simulator.settings().gravity, Vector3(1.0, 0.0, 0.0));
+  settings.gravity = Vector3(0.0, 0.0, 3.0);
+  simulator.continue_with(simulator.model()->network(), settings);
+  EXPECT_EQ(simulator.settings().gravity, settings.gravity);
+  EXPECT_EQ(simulator.settings().wind.max_speed(), 0.0);
+  simulator.set_air(0.2, Wind(Vector3(5.0, 0.0, 0.0)));
+  EXPECT_EQ(simulator.settings().wind.max_speed(), 5.0);
+  EXPECT_EQ(simulator.settings().gravity, settings.gravity);
+}
+
 TEST(Restore, BringsAFormerStateBack) {
   Simulator simulator(torn_and_resting(), {.step = 1e-3}, {ground()});
   run(simulator, 0.1);

@@ -24,7 +24,7 @@ struct Element {
 /// The mean of each element's corners [m], one column per element.
 [[nodiscard]] Points element_middles(const std::vector<Element>& elements, const Points& positions);
 
-/// What moves a particle in a step.
+/// How a particle moves in a step.
 enum class ParticleMotion : std::uint8_t {
   free,     ///< forces and contact; truncation stops it
   driven,   ///< a pin that moves, which nothing stops: the pin may take its elements through an obstacle or other elements

@@ -10,7 +10,7 @@ namespace sprung {
 /// Particles inside a solid are elements too, so that an obstacle cannot separate them from their body.
 [[nodiscard]] CollisionSurface contact_surface(const SpringNetwork& network);
 
-/// What moves each particle now: its pin, if that moves; nothing, if it sleeps or its pin stands still; else it is free.
+/// The present motion of each particle: driven by a pin that moves; at rest if it sleeps or its pin stands still; else free.
 [[nodiscard]] ParticleMotions particle_motions(const SpringNetwork& network);
 
 }  // namespace sprung
