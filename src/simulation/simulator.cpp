@@ -2,204 +2,18 @@
 
 #include "base/format.h"
 #include "base/problem_list.h"
-#include "geometry/motion/motion_check.h"
-#include "network/model/spring_failure.h"
+#include "simulation/change_check.h"
 #include "simulation/reaction_record.h"
 #include "simulation/state_check.h"
+#include "simulation/steering.h"
 #include "simulation/step/step_check.h"
 #include "simulation/stepper.h"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 namespace sprung {
-namespace {
-
-bool have_same_bodies(const SpringNetwork& a, const SpringNetwork& b) {
-  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
-    return first.name == second.name && first.first_particle == second.first_particle &&
-           first.particle_count == second.particle_count;
-  });
-}
-
-bool collide_alike(const SpringNetwork& a, const SpringNetwork& b) {
-  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
-    return first.contact.self == second.contact.self && first.contact.others == second.contact.others;
-  });
-}
-
-bool have_same_pins(const SpringNetwork& a, const SpringNetwork& b) {
-  return std::ranges::equal(a.pins, b.pins, [](const Pin& first, const Pin& second) {
-    return first.name == second.name && first.particles == second.particles && first.from == second.from &&
-           first.until == second.until;
-  });
-}
-
-// Time is counted in frames, and within a frame in steps.
-void check_step_change(const SimulatorSettings& settings, const SimulatorSettings& before, const SimulationState& state,
-                       ProblemList& problems) {
-  if (settings.step == before.step && settings.steps_per_frame == before.steps_per_frame) return;
-  const double frame = before.step * before.steps_per_frame;
-  constexpr double kRounding = 1.0e-9;
-  if (std::abs(settings.step * settings.steps_per_frame - frame) > kRounding * frame) {
-    problems.add("step", format_number(settings.step, 6),
-                 "times steps_per_frame must stay a frame of " + format_number(frame, 6) + " s, as the run goes on",
-                 "change both, or begin a new run");
-  } else if (state.step_in_frame != 0) {
-    problems.add("step", format_number(settings.step, 6), "may change at the end of a frame alone, as the run goes on",
-                 "make the other steps of the frame first");
-  }
-}
-
-// The cached contacts and permitted crossings of a run belong to its elements.
-void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const Model& before,
-                  const SimulationState& state) {
-  const std::string restart = "begin a new run";
-  ProblemList problems;
-  if (!have_same_bodies(network, before.network())) {
-    problems.add("bodies", "", "must have the same names and particles as before, as the run goes on", restart);
-  } else if (!collide_alike(network, before.network())) {
-    problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
-  }
-  check_step_change(settings, before.settings(), state, problems);
-  if (settings.contact.response != before.settings().contact.response) {
-    problems.add("contact.response", "", "must stay as it is, as the run goes on", restart);
-  }
-  problems.throw_if_any();
-}
-
-/// Pins that a program added, and those of the same name and particles that it steers, go on in a model with other pins.
-void keep_pins(const std::vector<Pin>& before, const std::vector<Pin>& after, const std::vector<Index>& pin_of,
-               SimulationState& state) {
-  Steering& steering = state.steering;
-  std::vector<SteeredMotion> kept;
-  for (SteeredMotion& steered : steering.pins) {
-    if (steered.number >= before.size()) {
-      steered.number += after.size() - before.size();
-    } else {
-      const Pin& its = before[steered.number];
-      const auto same = std::ranges::find_if(
-          after, [&](const Pin& pin) { return pin.name == its.name && pin.particles == its.particles && pin.from == its.from; });
-      if (same == after.end()) continue;
-      steered.number = static_cast<std::size_t>(same - after.begin());
-    }
-    kept.push_back(std::move(steered));
-  }
-  std::ranges::sort(kept, {}, &SteeredMotion::number);
-  steering.pins = std::move(kept);
-  state.activity.phases.insert(state.activity.phases.end(), steering.added_pins.size(), PinPhase::holding);
-  for (std::size_t i = 0; i < pin_of.size(); ++i) {
-    const auto pin = static_cast<std::size_t>(pin_of[i]);
-    if (pin_of[i] != kNone && pin >= before.size()) {
-      state.activity.pin_of[i] = static_cast<Index>(pin + after.size() - before.size());
-    }
-  }
-}
-
-void check_entry(const std::string& key, std::size_t number, std::size_t count) {
-  if (number < count) return;
-  throw InputError(
-      {.key = key, .value = std::to_string(number), .rule = "there are only " + std::to_string(count), .remedy = "count from 0"});
-}
-
-void check_number(const std::string& key, double number, ProblemList& problems) {
-  if (std::isfinite(number) && number >= 0.0) return;
-  problems.add(key, format_number(number, 6), "must be finite and not negative", "give 0 for none");
-}
-
-void check_pose(const std::string& key, const RigidTransform& pose) {
-  if (is_rigid(pose)) return;
-  if (!pose.matrix().allFinite()) {
-    throw InputError({.key = key,
-                      .value = pose.linear().allFinite() ? vector_text(pose.translation()) : "a rotation that is not finite",
-                      .rule = "must be finite",
-                      .remedy = "give a position in m and a rotation"});
-  }
-  const Matrix3 linear = pose.linear();
-  const double off = (linear.transpose() * linear - Matrix3::Identity()).norm();
-  throw InputError({.key = key,
-                    .value = linear.determinant() < 0.0 ? "a reflection" : "a matrix R with |R^T R - I| = " + format_number(off, 3),
-                    .rule = "must be a rotation and a translation",
-                    .remedy = "leave out scale, shear and reflection; the normalized quaternion of R gives a rotation"});
-}
-
-/// Bound of the length [m] of the paths of points that are up to `reach` [m] from the origin of a pose, as it moves.
-double travel(const RigidTransform& from, const RigidTransform& to, double reach) {
-  const double angle = Eigen::Quaterniond(from.linear()).angularDistance(Eigen::Quaterniond(to.linear()));
-  return (to.translation() - from.translation()).stableNorm() + angle * reach;
-}
-
-/// The diagonal [m] of the largest of the boxes around each body at the start.
-double largest_size(const SpringNetwork& network) {
-  double largest = 0.0;
-  for (const Body& body : network.bodies) {
-    const auto positions = network.positions.middleCols(body.first_particle, body.particle_count);
-    largest = std::max(largest, (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).norm());
-  }
-  return largest;
-}
-
-/// One step must not stretch a body to more than twice its size.
-void check_travel(const std::string& key, double distance, const SpringNetwork& network) {
-  constexpr double kRounding = 1.0e-9;
-  const double most = largest_size(network);
-  if (most == 0.0 || distance <= (1.0 + kRounding) * most) return;  // without springs nothing is stretched
-  throw InputError({.key = key,
-                    .value = format_number(distance, 6) + " m from the present pose",
-                    .rule = "must be at most " + format_number(most, 6) + " m away in one step, the size of the largest body",
-                    .remedy = "go there in " + format_number(std::ceil(distance / most - kRounding)) + " steps"});
-}
-
-/// The first pose, and those at which pins took particles before `now` [s]: pins move these by what the pose changed since.
-std::vector<TimedPose> poses_of_grips(const SteeredMotion& steered, const std::vector<PinGrip>& grips, double now) {
-  const double first = steered.poses.front().time;
-  std::set<double> times;
-  for (const PinGrip& grip : grips) {
-    if (grip.time > first && grip.time < now) times.insert(grip.time);
-  }
-  const Motion motion{.poses = steered.poses};
-  std::vector<TimedPose> poses{steered.poses.front()};
-  for (const double time : times) poses.push_back({time, motion.pose(steered.poses.front().pose, time)});
-  return poses;
-}
-
-void check_particle(const SpringNetwork& network, Index particle) {
-  if (particle >= 0 && particle < network.particle_count()) return;
-  throw InputError({.key = "particle",
-                    .value = std::to_string(particle),
-                    .rule = "must be the number of a particle; there are " + std::to_string(network.particle_count()),
-                    .remedy = "count particles from 0"});
-}
-
-/// `model` has the pins that no program added.
-void check_pin(const SpringNetwork& model, const std::vector<Index>& particles, const std::string& name) {
-  const std::string key = "pins." + name;
-  ProblemList problems;
-  const auto exists = [&](Index i) { return i >= 0 && i < model.particle_count(); };
-  if (particles.empty()) problems.add(key, "", "must contain at least one particle", "name a particle");
-  problems.require_each(
-      particles.size(), [&](std::size_t k) { return exists(particles[k]); },
-      [&](std::size_t k) { return std::to_string(particles[k]); },
-      {key, "must be the number of a particle; there are " + std::to_string(model.particle_count()), "count particles from 0"});
-  std::vector<Index> sorted = particles;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end()) problems.add(key, std::to_string(*twice), "must be named once", "remove the second one");
-  const auto is_its = [&](const auto& named) { return named.name == name; };
-  if (name.empty()) problems.add("pins", "\"\"", "must be a name, which its reaction has too", "name the pin");
-  if (std::ranges::any_of(model.pins, is_its)) {
-    problems.add(key, "", "is the name of a pin of the network already", "choose another name, or move that pin");
-  }
-  if (std::ranges::any_of(model.attachments, is_its)) {
-    problems.add(key, "", "is the name of an attachment already", "choose another name");
-  }
-  problems.throw_if_any();
-}
-
-}  // namespace
-
 struct Simulator::Implementation {
   Implementation(std::shared_ptr<const Model> shared, Control chosen, const SimulationState& from)
       : model(std::move(shared)), control(std::move(chosen)), state(from) {
@@ -219,8 +33,6 @@ struct Simulator::Implementation {
   void change_awake(const Change& change);
   void change_activity(const Activity& activity);
   void follow_conditions();
-  void steer(std::vector<SteeredMotion> Steering::*list, std::size_t number, const RigidTransform& present,
-             const RigidTransform& target);
   void change_model(std::shared_ptr<const Model> next);
   void change_control(Control next);
 
@@ -265,36 +77,9 @@ void Simulator::Implementation::follow_conditions() {
   stepper().wake_all();
 }
 
-/// Moves a pin or an obstacle in the next step.
-void Simulator::Implementation::steer(std::vector<SteeredMotion> Steering::*list, std::size_t number, const RigidTransform& present,
-                                      const RigidTransform& target) {
-  std::vector<SteeredMotion>& all = state.steering.*list;
-  const double now = stepper().time();
-  const double end = static_cast<double>(whole_steps(state) + 1) * model->settings().step;
-  auto steered = std::ranges::lower_bound(all, number, {}, &SteeredMotion::number);
-  const bool is_new = steered == all.end() || steered->number != number;
-  if (is_new) steered = all.insert(steered, {.number = number, .poses = {{now, present}}});
-  const BeforeTransition before = is_new ? stepper().before_transition() : BeforeTransition();
-  std::vector<TimedPose> poses = poses_of_grips(*steered, state.grips, now);
-  if (now > poses.front().time) poses.push_back({now, present});
-  poses.push_back({end, target});
-  steered->poses = std::move(poses);
-  if (is_new) {
-    stepper().make_transition(before);
-  } else {
-    stepper().follow_steering();
-  }
-}
-
 void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) {
   const BeforeTransition before = stepper().before_transition();
-  SimulationState continued = state;
-  continued.springs = carried_over(model->network(), state.springs, next->network());
-  if (!have_same_pins(model->network(), next->network())) {
-    continued.activity = all_free(next->network());
-    keep_pins(model->network().pins, next->network().pins, state.activity.pin_of, continued);
-    change_pins(next->network().pins, due_before(whole_steps(state), model->settings().step), continued.activity);
-  }
+  SimulationState continued = continued_in(*next, *model, state);
   Control with_settings = control;  // the new model's settings have their own gravity and wind
   with_settings.gravity.reset();
   with_settings.wind.reset();
@@ -307,15 +92,17 @@ void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) 
 }
 
 void Simulator::Implementation::change_control(Control next) {
-  const BeforeTransition before = stepper().before_transition();
-  SimulationState continued = state;
-  continued.added_forces = next.forces.size();
-  continued.added_constraints = next.constraints.size();
-  auto its_scratch = std::make_unique<Scratch>(*model, next, continued);
-  Stepper(*model, next, continued, *its_scratch).inherit(before, *model);
-  control = std::move(next);
-  scratch = std::move(its_scratch);
-  state = continued;
+  change_awake([&] {
+    const BeforeTransition before = stepper().before_transition();
+    SimulationState continued = state;
+    continued.added_forces = next.forces.size();
+    continued.added_constraints = next.constraints.size();
+    auto its_scratch = std::make_unique<Scratch>(*model, next, continued);
+    Stepper(*model, next, continued, *its_scratch).inherit(before, *model);
+    control = std::move(next);
+    scratch = std::move(its_scratch);
+    state = continued;
+  });
 }
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
@@ -429,7 +216,7 @@ void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMateria
   for (const Obstacle& present : obstacles()) control.obstacle_materials.push_back(present.material);
   control.obstacle_materials[obstacle] = material;
   if (material.thickness != obstacles()[obstacle].material.thickness) {  // regions and searches depend on it
-    implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+    implementation_->change_control(std::move(control));
     return;
   }
   implementation_->control = std::move(control);
@@ -513,8 +300,8 @@ void Simulator::move_pin(std::size_t pin, const RigidTransform& pose) {
   for (const Index i : held_particles(network(), pin)) {
     reach = std::max(reach, (state().x.col(i) - present.translation()).norm());
   }
-  check_travel(key, travel(present, pose, reach), model()->network());
-  implementation_->steer(&Steering::pins, pin, present, pose);
+  check_travel(key, present, pose, reach, model()->network());
+  implementation_->stepper().steer(&Steering::pins, pin, present, pose);
 }
 
 void Simulator::move_obstacle(std::size_t obstacle, const RigidTransform& pose) {
@@ -523,8 +310,8 @@ void Simulator::move_obstacle(std::size_t obstacle, const RigidTransform& pose) 
   check_pose(key, pose);
   const Box3 box = implementation_->scratch->obstacles.shape(static_cast<Index>(obstacle)).bounds();
   const double reach = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
-  check_travel(key, travel(present, pose, std::isfinite(reach) ? reach : 0.0), model()->network());  // a half-space has no end
-  implementation_->steer(&Steering::obstacles, obstacle, present, pose);
+  check_travel(key, present, pose, std::isfinite(reach) ? reach : 0.0, model()->network());  // a half-space has no end
+  implementation_->stepper().steer(&Steering::obstacles, obstacle, present, pose);
 }
 
 void Simulator::add_force(std::shared_ptr<Force> force) {
@@ -535,27 +322,27 @@ void Simulator::add_force(std::shared_ptr<Force> force) {
   if (!elements.empty()) {
     check_step(settings(), simulation_bounds(model()->network(), settings(), !obstacles().empty(), control.forces));
   }
-  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+  implementation_->change_control(std::move(control));
 }
 
 void Simulator::remove_force(const Force& force) {
   Control control = implementation_->control;
   const auto is_it = [&](const std::shared_ptr<Force>& added) { return added.get() == &force; };
   if (std::erase_if(control.forces, is_it) == 0) return;
-  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+  implementation_->change_control(std::move(control));
 }
 
 void Simulator::add_constraint(std::shared_ptr<Constraint> constraint) {
   Control control = implementation_->control;
   control.constraints.push_back(std::move(constraint));
-  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+  implementation_->change_control(std::move(control));
 }
 
 void Simulator::remove_constraint(const Constraint& constraint) {
   Control control = implementation_->control;
   const auto is_it = [&](const std::shared_ptr<Constraint>& added) { return added.get() == &constraint; };
   if (std::erase_if(control.constraints, is_it) == 0) return;
-  implementation_->change_awake([&] { implementation_->change_control(std::move(control)); });
+  implementation_->change_control(std::move(control));
 }
 
 const std::shared_ptr<const Model>& Simulator::model() const { return implementation_->model; }

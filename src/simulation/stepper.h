@@ -46,8 +46,9 @@ class Stepper {
   void wake_all();
   /// Wakes the groups near moving pins and obstacles.
   void wake_driven();
-  /// Lets pins and obstacles move as `state.steering` now says.
-  void follow_steering();
+  /// Moves a pin or an obstacle in the next step.
+  void steer(std::vector<SteeredMotion> Steering::*list, std::size_t number, const RigidTransform& present,
+             const RigidTransform& target);
   void begin_recording();
   void note_change() { EnergyWatch::note_change(energies(), state_.energy); }
 
@@ -84,6 +85,8 @@ class Stepper {
   void check_state();
   void check_energy(const Energies& now) const;
   void fail(StepFailure failure) const;
+
+  void follow_steering();
 
   // Transitions.
   void finish_transition(const BeforeTransition& before, bool restarts);

@@ -189,13 +189,6 @@ void Stepper::restore(const SimulationState& former) {
   }
 }
 
-void Stepper::follow_steering() {
-  scratch_.follow(model_, control_, state_);
-  work().pin_paths.register_pins(state_);
-  move_pins(time());
-  wake_driven();
-}
-
 void Stepper::enter() {
   work().pin_paths.register_pins(state_);
   load();

@@ -60,11 +60,13 @@ TEST(ParticleMotions, PinsThatMoveDriveWhatDoesNotSleep) {
   for (int i = 0; i < 4; ++i) builder.add_particle(Vector3(i, 0.0, 0.0), 1.0);
   builder.pin(1, {.keyframes = {}, .spin = Vector3::UnitY()});
   builder.pin(2);
+  const Pin later{.particles = {0}, .motion = {.keyframes = {}, .spin = Vector3::UnitY()}, .from = 1.0};
+  builder.add_pin(later);
   SpringNetwork network = builder.build();
   constexpr auto kFree = ParticleMotion::free;
   constexpr auto kDriven = ParticleMotion::driven;
   constexpr auto kAtRest = ParticleMotion::at_rest;
-  EXPECT_THAT(particle_motions(network), ElementsAre(kFree, kDriven, kAtRest, kFree));
+  EXPECT_THAT(particle_motions(network), ElementsAre(kFree, kDriven, kAtRest, kFree)) << "a pin that has not begun drives nothing";
   set_asleep({0, 0, 0, 1}, network);
   EXPECT_THAT(particle_motions(network), ElementsAre(kFree, kDriven, kAtRest, kAtRest));
 }

@@ -1,0 +1,147 @@
+#include "simulation/change_check.h"
+
+#include "base/error.h"
+#include "base/format.h"
+#include "geometry/motion/motion_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sprung {
+namespace {
+
+bool have_same_bodies(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
+    return first.name == second.name && first.first_particle == second.first_particle &&
+           first.particle_count == second.particle_count;
+  });
+}
+
+bool collide_alike(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
+    return first.contact.self == second.contact.self && first.contact.others == second.contact.others;
+  });
+}
+
+// Time is counted in frames, and within a frame in steps.
+void check_step_change(const SimulatorSettings& settings, const SimulatorSettings& before, const SimulationState& state,
+                       ProblemList& problems) {
+  if (settings.step == before.step && settings.steps_per_frame == before.steps_per_frame) return;
+  const double frame = before.step * before.steps_per_frame;
+  constexpr double kRounding = 1.0e-9;
+  if (std::abs(settings.step * settings.steps_per_frame - frame) > kRounding * frame) {
+    problems.add("step", format_number(settings.step, 6),
+                 "times steps_per_frame must stay a frame of " + format_number(frame, 6) + " s, as the run goes on",
+                 "change both, or begin a new run");
+  } else if (state.step_in_frame != 0) {
+    problems.add("step", format_number(settings.step, 6), "may change at the end of a frame alone, as the run goes on",
+                 "make the other steps of the frame first");
+  }
+}
+
+/// Bound of the length [m] of the paths of points that are up to `reach` [m] from the origin of a pose, as it moves.
+double travel(const RigidTransform& from, const RigidTransform& to, double reach) {
+  const double angle = Eigen::Quaterniond(from.linear()).angularDistance(Eigen::Quaterniond(to.linear()));
+  return (to.translation() - from.translation()).stableNorm() + angle * reach;
+}
+
+/// The diagonal [m] of the largest of the boxes around each body at the start.
+double largest_size(const SpringNetwork& network) {
+  double largest = 0.0;
+  for (const Body& body : network.bodies) {
+    const auto positions = network.positions.middleCols(body.first_particle, body.particle_count);
+    largest = std::max(largest, (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).norm());
+  }
+  return largest;
+}
+
+}  // namespace
+
+void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const Model& before,
+                  const SimulationState& state) {
+  const std::string restart = "begin a new run";
+  ProblemList problems;
+  if (!have_same_bodies(network, before.network())) {
+    problems.add("bodies", "", "must have the same names and particles as before, as the run goes on", restart);
+  } else if (!collide_alike(network, before.network())) {
+    problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
+  }
+  check_step_change(settings, before.settings(), state, problems);
+  if (settings.contact.response != before.settings().contact.response) {
+    problems.add("contact.response", "", "must stay as it is, as the run goes on", restart);
+  }
+  problems.throw_if_any();
+}
+
+void check_entry(const std::string& key, std::size_t number, std::size_t count) {
+  if (number < count) return;
+  throw InputError(
+      {.key = key, .value = std::to_string(number), .rule = "there are only " + std::to_string(count), .remedy = "count from 0"});
+}
+
+void check_number(const std::string& key, double number, ProblemList& problems) {
+  if (std::isfinite(number) && number >= 0.0) return;
+  problems.add(key, format_number(number, 6), "must be finite and not negative", "give 0 for none");
+}
+
+void check_pose(const std::string& key, const RigidTransform& pose) {
+  if (is_rigid(pose)) return;
+  if (!pose.matrix().allFinite()) {
+    throw InputError({.key = key,
+                      .value = pose.linear().allFinite() ? vector_text(pose.translation()) : "a rotation that is not finite",
+                      .rule = "must be finite",
+                      .remedy = "give a position in m and a rotation"});
+  }
+  const Matrix3 linear = pose.linear();
+  const double off = (linear.transpose() * linear - Matrix3::Identity()).norm();
+  throw InputError({.key = key,
+                    .value = linear.determinant() < 0.0 ? "a reflection" : "a matrix R with |R^T R - I| = " + format_number(off, 3),
+                    .rule = "must be a rotation and a translation",
+                    .remedy = "leave out scale, shear and reflection; the normalized quaternion of R gives a rotation"});
+}
+
+void check_travel(const std::string& key, const RigidTransform& from, const RigidTransform& to, double reach,
+                  const SpringNetwork& network) {
+  const double distance = travel(from, to, reach);
+  constexpr double kRounding = 1.0e-9;
+  const double most = largest_size(network);
+  if (most == 0.0 || distance <= (1.0 + kRounding) * most) return;  // without springs nothing is stretched
+  throw InputError({.key = key,
+                    .value = format_number(distance, 6) + " m from the present pose",
+                    .rule = "must be at most " + format_number(most, 6) + " m away in one step, the size of the largest body",
+                    .remedy = "go there in " + format_number(std::ceil(distance / most - kRounding)) + " steps"});
+}
+
+void check_particle(const SpringNetwork& network, Index particle) {
+  if (particle >= 0 && particle < network.particle_count()) return;
+  throw InputError({.key = "particle",
+                    .value = std::to_string(particle),
+                    .rule = "must be the number of a particle; there are " + std::to_string(network.particle_count()),
+                    .remedy = "count particles from 0"});
+}
+
+void check_pin(const SpringNetwork& model, const std::vector<Index>& particles, const std::string& name) {
+  const std::string key = "pins." + name;
+  ProblemList problems;
+  const auto exists = [&](Index i) { return i >= 0 && i < model.particle_count(); };
+  if (particles.empty()) problems.add(key, "", "must contain at least one particle", "name a particle");
+  problems.require_each(
+      particles.size(), [&](std::size_t k) { return exists(particles[k]); },
+      [&](std::size_t k) { return std::to_string(particles[k]); },
+      {key, "must be the number of a particle; there are " + std::to_string(model.particle_count()), "count particles from 0"});
+  std::vector<Index> sorted = particles;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) problems.add(key, std::to_string(*twice), "must be named once", "remove the second one");
+  const auto is_its = [&](const auto& named) { return named.name == name; };
+  if (name.empty()) problems.add("pins", "\"\"", "must be a name, which its reaction has too", "name the pin");
+  if (std::ranges::any_of(model.pins, is_its)) {
+    problems.add(key, "", "is the name of a pin of the network already", "choose another name, or move that pin");
+  }
+  if (std::ranges::any_of(model.attachments, is_its)) {
+    problems.add(key, "", "is the name of an attachment already", "choose another name");
+  }
+  problems.throw_if_any();
+}
+
+}  // namespace sprung

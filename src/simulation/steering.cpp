@@ -1,0 +1,102 @@
+// Pins and obstacles that a program moves.
+#include "simulation/steering.h"
+
+#include "network/model/spring_failure.h"
+#include "simulation/stepper.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+/// The first pose, and those at which pins took particles before `now` [s]: pins move these by what the pose changed since.
+std::vector<TimedPose> poses_of_grips(const SteeredMotion& steered, const std::vector<PinGrip>& grips, double now) {
+  const double first = steered.poses.front().time;
+  std::set<double> times;
+  for (const PinGrip& grip : grips) {
+    if (grip.time > first && grip.time < now) times.insert(grip.time);
+  }
+  const Motion motion{.poses = steered.poses};
+  std::vector<TimedPose> poses{steered.poses.front()};
+  for (const double time : times) poses.push_back({time, motion.pose(steered.poses.front().pose, time)});
+  return poses;
+}
+
+bool have_same_pins(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.pins, b.pins, [](const Pin& first, const Pin& second) {
+    return first.name == second.name && first.particles == second.particles && first.from == second.from &&
+           first.until == second.until;
+  });
+}
+
+/// Pins that a program added, and those of the same name and particles that it steers, go on in a model with other pins.
+void keep_pins(const std::vector<Pin>& before, const std::vector<Pin>& after, const std::vector<Index>& pin_of,
+               SimulationState& state) {
+  Steering& steering = state.steering;
+  std::vector<SteeredMotion> kept;
+  for (SteeredMotion& steered : steering.pins) {
+    if (steered.number >= before.size()) {
+      steered.number += after.size() - before.size();
+    } else {
+      const Pin& its = before[steered.number];
+      const auto same = std::ranges::find_if(
+          after, [&](const Pin& pin) { return pin.name == its.name && pin.particles == its.particles && pin.from == its.from; });
+      if (same == after.end()) continue;
+      steered.number = static_cast<std::size_t>(same - after.begin());
+    }
+    kept.push_back(std::move(steered));
+  }
+  std::ranges::sort(kept, {}, &SteeredMotion::number);
+  steering.pins = std::move(kept);
+  state.activity.phases.insert(state.activity.phases.end(), steering.added_pins.size(), PinPhase::holding);
+  for (std::size_t i = 0; i < pin_of.size(); ++i) {
+    const auto pin = static_cast<std::size_t>(pin_of[i]);
+    if (pin_of[i] != kNone && pin >= before.size()) {
+      state.activity.pin_of[i] = static_cast<Index>(pin + after.size() - before.size());
+    }
+  }
+}
+
+}  // namespace
+
+SimulationState continued_in(const Model& next, const Model& before, const SimulationState& state) {
+  SimulationState continued = state;
+  continued.springs = carried_over(before.network(), state.springs, next.network());
+  if (have_same_pins(before.network(), next.network())) return continued;
+  continued.activity = all_free(next.network());
+  keep_pins(before.network().pins, next.network().pins, state.activity.pin_of, continued);
+  change_pins(next.network().pins, due_before(whole_steps(state), before.settings().step), continued.activity);
+  return continued;
+}
+
+void Stepper::steer(std::vector<SteeredMotion> Steering::*list, std::size_t number, const RigidTransform& present,
+                    const RigidTransform& target) {
+  std::vector<SteeredMotion>& all = state_.steering.*list;
+  const double now = time();
+  const double end = static_cast<double>(whole_steps(state_) + 1) * settings().step;
+  auto steered = std::ranges::lower_bound(all, number, {}, &SteeredMotion::number);
+  const bool is_new = steered == all.end() || steered->number != number;
+  if (is_new) steered = all.insert(steered, {.number = number, .poses = {{now, present}}});
+  const BeforeTransition before = is_new ? before_transition() : BeforeTransition();
+  std::vector<TimedPose> poses = poses_of_grips(*steered, state_.grips, now);
+  if (now > poses.front().time) poses.push_back({now, present});
+  poses.push_back({end, target});
+  steered->poses = std::move(poses);
+  if (is_new) {
+    make_transition(before);
+  } else {
+    follow_steering();
+  }
+}
+
+void Stepper::follow_steering() {
+  scratch_.follow(model_, control_, state_);
+  work().pin_paths.register_pins(state_);
+  move_pins(time());
+  wake_driven();
+}
+
+}  // namespace sprung
