@@ -28,8 +28,11 @@ struct BrokenLink {
 };
 
 /// The model and its state, with steps and changes. A copy shares the model and the added forces and constraints, and goes on from
-/// the same state; it costs about as much as a few dozen steps. Simulators do not share anything else: several may step at the same
-/// time. The const members of one simulator may be called at the same time.
+/// the same state.
+///
+/// Threads: several simulators may be used at the same time, also copies; their added forces and constraints must permit that. Of
+/// one simulator, const members may be called at the same time. A member that is not const must be alone.
+/// Costs: a member without a word on its cost takes a constant time of less than a microsecond.
 class Simulator {
  public:
   /// Throws as Model::build, and costs as much.
@@ -39,6 +42,7 @@ class Simulator {
   explicit Simulator(const std::shared_ptr<const Model>& model);
 
   ~Simulator();
+  /// Costs about as much as a few dozen steps. So does the assignment of a copy.
   Simulator(const Simulator& other);
   Simulator& operator=(const Simulator& other);
   Simulator(Simulator&&) noexcept;
@@ -69,53 +73,58 @@ class Simulator {
 
   // Changes between two steps. The state remains: positions, velocities, time, and bodies that a global solve took over. All
   // particles wake. References to network() and settings() become invalid. Each throws InputError that names every problem; the
-  // simulation then continues as before. pin(), release(), set_obstacle_material(), and forces and constraints cost about as much
-  // as a few steps. The others make a new model, which takes about as long as the constructor without its obstacles.
+  // simulation then continues as before. A new model costs about as much as the constructor without its obstacles.
 
-  /// Continues with another network and other settings. Requires a network that NetworkBuilder made with the same bodies and the
-  /// same particles. The start of contact cannot change, nor what collides (Body::contact) or how (response). The step may change
-  /// with steps_per_frame at the end of a frame. Springs that broke stay broken, and springs that yielded keep their rest lengths.
-  /// If the pins are the same, particles that pin() and release() changed stay so.
+  /// Costs a new model. Continues with another network and other settings. Requires a network that NetworkBuilder made with the
+  /// same bodies and the same particles. The start of contact cannot change, nor what collides (Body::contact) or how (response).
+  /// The step may change with steps_per_frame at the end of a frame. Springs that broke stay broken, and springs that yielded keep
+  /// their rest lengths. If the pins are the same, particles that pin() and release() changed stay so.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
-  /// Wakes all particles.
+  /// Wakes all particles. Costs about as much as a few steps if any sleep.
   void wake();
 
-  /// [m/s^2]. Costs less than a hundredth of a step, except with quadratic drag on faces: its bound depends on the speed of a fall.
+  /// [m/s^2]. Costs less than a hundredth of a step; with quadratic drag on faces a new model, as its bound depends on the speed of
+  /// a fall.
   void set_gravity(const Vector3& acceleration);
-  /// See SimulatorSettings. Another wind alone costs less than a hundredth of a step, with the same exception.
+  /// See SimulatorSettings. Costs a new model, but another wind alone less than a hundredth of a step, with the same exception.
   void set_air(double drag, const Wind& wind);
 
   /// Springs that exceed the new limit are shortened at once, as far as obstacles and bodies permit; velocities stay as they are.
+  /// Costs a new model.
   void set_stretch_limit(const std::optional<StretchLimitSettings>& limit);
 
-  /// Gives all springs of a kind in a body this stiffness [N/m] and damping [N s/m].
+  /// Gives all springs of a kind in a body this stiffness [N/m] and damping [N s/m]. Costs a new model.
   void set_springs(std::size_t body, SpringKind kind, double stiffness, double damping);
 
+  /// Costs a new model.
   void set_body_material(std::size_t body, const ContactMaterial& material);
+  /// Costs less than a hundredth of a step, but another thickness a few dozen steps.
   void set_obstacle_material(std::size_t obstacle, const ContactMaterial& material);
 
   /// Fixes a particle where it is. Does nothing if it is pinned already. A pin of the network that begins later leaves it out.
-  /// Returns the number of its pin.
+  /// Returns the number of its pin. Costs about as much as a few steps.
   std::size_t pin(Index particle);
 
   /// Fixes particles where they are, relative to each other; those that are pinned already stay with their pin. The name is that of
   /// the reaction, and a pin of this name that a program added before ends. The pose of the pin is at the mean of the particles.
-  /// Throws InputError also if the name is that of a pin or an attachment of the network.
+  /// Throws InputError also if the name is that of a pin or an attachment of the network. Costs about as much as a few steps.
   std::size_t pin(const std::vector<Index>& particles, const std::string& name);
 
-  /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned.
+  /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned. Costs
+  /// about as much as a few steps; for a pin that holds always in addition the bounds of a new model.
   void release(Index particle);
 
   // Steering. The next step moves a pin or an obstacle to a pose, on a line and with the shortest rotation; its velocity follows.
-  // It then stays there, whatever keyframes it had, until it is moved again. Call it before each step. The first call for a pin or
-  // an obstacle costs about as much as a few steps, others cost little. A step may move no point farther than the largest body is
-  // large, so that it stretches none to more than twice its size: contact follows obstacles that far. Elements that a pin drags
-  // through an obstacle cross it, as ever. Throws InputError if the pose is not a rotation and a translation, or too far; it then
-  // names the distance, and the number of steps to go there in.
+  // It then stays there, whatever keyframes it had, until it is moved again. Call it before each step. A step may move no point
+  // farther than the largest body is large, so that it stretches none to more than twice its size: contact follows obstacles that
+  // far. Elements that a pin drags through an obstacle cross it, as ever. Throws InputError if the pose is not a rotation and a
+  // translation, or too far; it then names the distance, and the number of steps to go there in.
 
   /// The rigid motion from the present pose to this one moves the particles of a pin. Not for pins that follow an obstacle.
+  /// Costs about as much as a few steps at the first call for a pin, then a time that grows with its particles.
   void move_pin(std::size_t pin, const RigidTransform& pose);
+  /// Costs about as much as a few steps at the first call for an obstacle.
   void move_obstacle(std::size_t obstacle, const RigidTransform& pose);
 
   [[nodiscard]] RigidTransform pin_pose(std::size_t pin) const;  ///< now; of a pin without motion: a translation to its origin
@@ -124,17 +133,18 @@ class Simulator {
   /// Adds an external force. The caller may change its parameters between steps. The force must not keep references to network().
   /// The largest stable step accounts for the elements that the force appends: it is found anew if there are any. Throws InputError
   /// if the step is beyond it. The energy is not checked while there are external forces, as they may supply any amount. Only the
-  /// particles that the force touches (Force::touched) stay awake.
+  /// particles that the force touches (Force::touched) stay awake. Costs a few dozen steps, and the bounds of a new model for
+  /// elements.
   void add_force(std::shared_ptr<Force> force);
 
   /// Adds a constraint, which the passes of each step restore. The caller may change its parameters between steps. The constraint
-  /// must not keep references to network(). The energy is not checked while there are added constraints.
+  /// must not keep references to network(). The energy is not checked while there are added constraints. Costs a few dozen steps.
   void add_constraint(std::shared_ptr<Constraint> constraint);
 
-  /// Removes a constraint. Does nothing if it was not added.
+  /// Removes a constraint. Does nothing if it was not added. Costs a few dozen steps.
   void remove_constraint(const Constraint& constraint);
 
-  /// Removes an external force. Does nothing if it was not added.
+  /// Removes an external force. Does nothing if it was not added. Costs a few dozen steps.
   void remove_force(const Force& force);
 
   /// What no step changes. Any thread may use it.
@@ -144,7 +154,7 @@ class Simulator {
   [[nodiscard]] const SimulatorSettings& settings() const;
   [[nodiscard]] const SimulationState& state() const;
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
-  [[nodiscard]] ObstacleFrame obstacle_frame() const;  ///< the obstacles at time()
+  [[nodiscard]] ObstacleFrame obstacle_frame() const;  ///< the obstacles at time(); grows with their number
   [[nodiscard]] const std::vector<std::string>& warnings() const;
   /// Changes that the settings asked for, such as bodies that `push_out` moved; a sentence each.
   [[nodiscard]] const std::vector<std::string>& notes() const;
@@ -158,16 +168,17 @@ class Simulator {
   /// Name of the solver of the stretch limit (see StretchLimit::chosen_solver); empty without a limit.
   [[nodiscard]] std::string stretch_solver() const;
 
-  /// Number of particles that contact pushed in the last step.
+  /// Number of particles that contact pushed in the last step. Costs as much as contact_particles().
   [[nodiscard]] Index contact_count() const;
 
-  /// These particles, ascending.
+  /// These particles, ascending. Grows with the number of contacts.
   [[nodiscard]] std::vector<Index> contact_particles() const;
 
-  /// The rods and springs of attachments that broke so far, in the order of the attachments.
+  /// The rods and springs of attachments that broke so far, in the order of the attachments; grows with their number.
   [[nodiscard]] std::vector<BrokenLink> broken_links() const;
 
-  /// Throws StepError if a spring is overstretched or the energy exploded. step() checks large networks only every few steps.
+  /// Throws StepError if a spring is overstretched or the energy exploded. step() checks large networks only every few steps. Grows
+  /// with the number of springs, as the next three do.
   void check() const;
 
   /// Elastic energy [J]: sum of 1/2 k_s (|s| - d)^2 of springs and attachments, the energy of angle bends, -p V of bodies with a
@@ -177,7 +188,7 @@ class Simulator {
   [[nodiscard]] double gravity_energy() const;
   [[nodiscard]] double contact_energy() const;
 
-  // With SimulatorSettings::record_forces.
+  // With SimulatorSettings::record_forces. The cost grows with the number of pins, attachments and springs.
 
   /// The mean force [N] of each pin on its body, then of each attachment on its first ends, since reset_forces() or time 0: impulse
   /// by time, in the order in which they were added; 0 of those that did not act then. Empty without the setting.
