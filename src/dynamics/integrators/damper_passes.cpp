@@ -4,45 +4,70 @@
 #include "dynamics/state/simulation_state.h"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace sprung {
 namespace {
 
-// Between its roots, the Chebyshev polynomial of the two series is at most about (1 + kDecay)^-2: what is fast for a step loses a
-// third of its speed or more. A smaller number bears a little more damping, but leaves some of the fast modes undamped.
-constexpr double kDecay = 0.2;
+// T_s(w0). For fast modes, P is between (kOffset - 1) / (kSteep + kOffset) = 0.05 and (kOffset + 1) / (kSteep + kOffset) = 0.32.
+constexpr double kSteep = 6.0;
+constexpr double kOffset = 1.4;
+constexpr double kSum = kSteep + kOffset;
 
-constexpr int kMostOfSeries = kMostDamperSteps / 2;
+/// w0: the argument of T_s at which it is kSteep.
+double argument_of(int passes) { return std::cosh(std::acosh(kSteep) / passes); }
 
-/// The argument beyond 1 that stands for an undamped mode.
-double shift_of(int steps) { return 1.0 + kDecay / (steps * steps); }
-
-/// 1 / (shift - root) of the k-th root of the Chebyshev polynomial: the lengths are in proportion to it.
-double length_of(int k, int steps) { return 1.0 / (shift_of(steps) - std::cos(std::numbers::pi * (k + 0.5) / steps)); }
-
-double sum_of_lengths(int steps) {
-  double sum = 0.0;
-  for (int k = 0; k < steps; ++k) sum += length_of(k, steps);
-  return sum;
+/// w1 of a step of one second, for which P has the derivative -1 at a rate of zero: kSum / T_s'(w0).
+double slope_of(int passes) {
+  const double growth = std::acosh(kSteep) / passes;
+  return kSum * std::sinh(growth) / (passes * std::sinh(std::acosh(kSteep)));
 }
 
-/// The largest rate times dt / 2 for which the series is stable: where the argument is -1.
-double borne(int steps) { return (shift_of(steps) + 1.0) * sum_of_lengths(steps); }
+/// The largest rate times dt for which the passes are stable: where the argument is -1.
+double borne(int passes) { return (argument_of(passes) + 1.0) / slope_of(passes); }
+
+/// Sets the shares of the impulses: a change of v_j changes v* by `here`.
+void set_impulses(DamperSeries& series) {
+  double of_next = 0.0;
+  double here = series.share;
+  for (std::size_t j = series.passes.size(); j-- > 0;) {
+    series.passes[j].impulse = here * series.passes[j].gained;
+    const double of_second_next = std::exchange(of_next, here);
+    here = series.passes[j].last * of_next;
+    if (j + 1 < series.passes.size()) here += series.passes[j + 1].second_last * of_second_next;
+  }
+}
 
 }  // namespace
 
-std::vector<double> damper_steps(double dt, double rate) {
-  int steps = 1;
-  while (steps < kMostOfSeries && borne(steps) < 0.5 * dt * rate) ++steps;
-  std::vector<double> lengths;
-  const double scale = 0.5 * dt / sum_of_lengths(steps);
-  for (int k = steps - 1; k >= 0; --k) lengths.push_back(scale * length_of(k, steps));
-  return lengths;
+double DamperSeries::factor(double rate) const {
+  double last = 1.0;
+  double second_last = 0.0;
+  for (const DamperPass& pass : passes) {
+    second_last = std::exchange(last, (pass.last - pass.gained * rate) * last + pass.second_last * second_last);
+  }
+  return share * last + 1.0 - share;
 }
 
-double most_damping_rate(double dt) { return 2.0 * borne(kMostOfSeries) / dt; }
+DamperSeries damper_series(double dt, double rate) {
+  int count = 1;
+  while (count < kMostDamperPasses && borne(count) < dt * rate) ++count;
+  const double argument = argument_of(count);
+  const double slope = slope_of(count) * dt;
+  DamperSeries series{.passes = {{.last = 1.0, .second_last = 0.0, .gained = slope / argument}}, .share = kSteep / kSum};
+  double last = argument;  // T_(j-1)(w0)
+  double second_last = 1.0;
+  while (static_cast<int>(series.passes.size()) < count) {
+    const double next = 2.0 * argument * last - second_last;
+    series.passes.push_back(
+        {.last = 2.0 * argument * last / next, .second_last = -second_last / next, .gained = 2.0 * slope * last / next});
+    second_last = std::exchange(last, next);
+  }
+  set_impulses(series);
+  return series;
+}
+
+double most_damping_rate(double dt) { return borne(kMostDamperPasses) / dt; }
 
 void DamperPasses::set(Forces dampers, double rate) {
   dampers_ = std::move(dampers);
@@ -51,20 +76,35 @@ void DamperPasses::set(Forces dampers, double rate) {
 
 void DamperPasses::apply(const Points& x, double dt, SimulationState& state) {
   if (empty()) return;
-  const std::vector<double> lengths = damper_steps(dt, rate_);
+  const DamperSeries series = damper_series(dt, rate_);
   const double time = step_begin(state, dt);
-  for (int series = 0; series < 2; ++series) {
-    for (const double length : lengths) {
-      sum_forces(dampers_, {.x = x, .v = state.v, .time = time}, total_);
-      for_particles(network_, [&](Index i) {
-        if (!network_.is_fixed(i)) {
-          state.v.col(i) += length * network_.inverse_masses[i] * total_.col(i);
-        } else if (state.impulses.on()) {
-          state.impulses.on_pinned.col(i) += length * total_.col(i);
-        }
-      });
-    }
+  first_ = state.v;
+  second_last_ = state.v;
+  for (const DamperPass& pass : series.passes) {
+    sum_forces(dampers_, {.x = x, .v = state.v, .time = time}, total_);
+    for_particles(network_, [&](Index i) {
+      if (!network_.is_fixed(i)) {
+        const Vector3 last = state.v.col(i);
+        state.v.col(i) =
+            pass.last * last + pass.second_last * second_last_.col(i) + pass.gained * network_.inverse_masses[i] * total_.col(i);
+        second_last_.col(i) = last;
+      } else if (state.impulses.on()) {
+        state.impulses.on_pinned.col(i) += pass.impulse * total_.col(i);
+      }
+    });
   }
+  for_free_particles(network_,
+                     [&](Index i) { state.v.col(i) = series.share * state.v.col(i) + (1.0 - series.share) * first_.col(i); });
+}
+
+void DamperPasses::apply_amid(const Points& x, const Points& forces, double dt, SimulationState& state) {
+  if (empty()) return;
+  const auto add_half = [&](double sign) {
+    for_free_particles(network_, [&](Index i) { state.v.col(i) += sign * 0.5 * dt * network_.inverse_masses[i] * forces.col(i); });
+  };
+  add_half(-1.0);
+  apply(x, dt, state);
+  add_half(1.0);
 }
 
 }  // namespace sprung

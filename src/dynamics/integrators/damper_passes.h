@@ -1,10 +1,11 @@
-// Dampers apart from the other forces: a step of the springs holds several shorter ones of the dampers.
+// Dampers apart from the other forces: a step of the springs holds several passes over the dampers.
 //
-// At fixed positions, dampers are linear in the velocities: dv/dt = -M^-1 C v. Explicit Euler steps of different lengths, the
-// inverse roots of a Chebyshev polynomial, are together stable for a rate that grows with the square of their number (Richardson
-// 1910; Alexiades, Amiez and Gremaud 1996, "super time stepping"). Two equal series of them multiply each mode by a square, hence
-// never by a negative number: v* = P v with 0 <= P < 1. Then (P^-1 - 1) M / dt is a damper that acts implicitly, and leapfrog
-// schemes are stable up to the bound of their springs alone. Momentum and spin stay, as they do with each damper's force.
+// At fixed positions, dampers are linear in the velocities: dv/dt = -M^-1 C v. The passes of a step evaluate a polynomial of
+// M^-1 C by the recurrence of Chebyshev polynomials T, as stabilized Runge-Kutta methods do (van der Houwen and Sommeijer 1980):
+//     v* = P v,  P = (T_s(w0 - w1 M^-1 C) + kOffset) / (T_s(w0) + kOffset).
+// s passes bear a rate that grows with s^2. The offset keeps P above zero: v* = P v with 0 < P <= 1. Then (P^-1 - 1) M / dt is a
+// finite damper that acts implicitly. Leapfrog schemes are stable up to the bound of their springs alone, and no mode is so
+// strongly damped that it cannot relax. Momentum and spin stay, as they do with each damper's force.
 #pragma once
 
 #include "base/types.h"
@@ -17,15 +18,31 @@ namespace sprung {
 struct SimulationState;
 struct SpringNetwork;
 
-/// Most steps of dampers in a step: it bounds their cost.
-inline constexpr int kMostDamperSteps = 16;
+/// Most passes over the dampers in a step: it bounds their cost.
+inline constexpr int kMostDamperPasses = 16;
 
-/// The lengths [s] of one of the two series for a step of `dt` [s]; they add up to dt / 2. `rate` [1/s] is the largest eigenvalue
-/// of M^-1 C. As few as are stable, at most half of kMostDamperSteps; the shortest first, so that no mode grows meanwhile by more
-/// than rounding.
-[[nodiscard]] std::vector<double> damper_steps(double dt, double rate);
+/// Pass j computes v_j = last v_(j-1) + second_last v_(j-2) + gained M^-1 F(v_(j-1)).
+struct DamperPass {
+  double last = 1.0;
+  double second_last = 0.0;
+  double gained = 0.0;   ///< [s]
+  double impulse = 0.0;  ///< the impulse of the step is the sum of these times F(v_(j-1)) [s]
+};
 
-/// The largest rate [1/s] for which damper_steps() is stable.
+/// The passes of a step, and the share of the last one in v*; the rest is the share of the first velocity.
+struct DamperSeries {
+  std::vector<DamperPass> passes;
+  double share = 1.0;
+
+  /// P for a mode of this rate [1/s].
+  [[nodiscard]] double factor(double rate) const;
+};
+
+/// For a step of `dt` [s]. `rate` [1/s] is the largest eigenvalue of M^-1 C. As few passes as are stable, at most
+/// kMostDamperPasses.
+[[nodiscard]] DamperSeries damper_series(double dt, double rate);
+
+/// The largest rate [1/s] for which damper_series() is stable.
 [[nodiscard]] double most_damping_rate(double dt);
 
 class DamperPasses {
@@ -42,11 +59,17 @@ class DamperPasses {
   /// the state records them.
   void apply(const Points& x, double dt, SimulationState& state);
 
+  /// Requires velocities to which `forces` [N] have been added for the whole step: lets the dampers act in the middle of that.
+  void apply_amid(const Points& x, const Points& forces, double dt, SimulationState& state);
+
  private:
   const SpringNetwork& network_;
   Forces dampers_;
   double rate_ = 0.0;
-  Points total_;  ///< scratch
+  // Scratch.
+  Points first_;
+  Points second_last_;
+  Points total_;
 };
 
 }  // namespace sprung

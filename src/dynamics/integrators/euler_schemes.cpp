@@ -30,7 +30,7 @@ class SymplecticEuler final : public Integrator {
     evaluate(state, forces, dt, total_);
     record(total_, dt, state);
     for_free_particles(network(), [&](Index i) { state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i); });
-    dampers().apply(state.x, dt, state);
+    dampers().apply_amid(state.x, total_, dt, state);
     for_free_particles(network(), [&](Index i) { state.x.col(i) += dt * state.v.col(i); });
   }
 

@@ -74,7 +74,7 @@ class Verlet final : public Integrator {
                      state.x_previous.col(begin).data(), state.v.col(begin).data());
     });
     if (dampers().empty()) return;
-    dampers().apply(state.x_previous, dt, state);
+    dampers().apply_amid(state.x_previous, total_, dt, state);
     for_free_particles(network(), [&](Index i) { state.x.col(i) = state.x_previous.col(i) + dt * state.v.col(i); });
   }
 

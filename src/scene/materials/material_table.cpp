@@ -14,6 +14,9 @@ namespace {
 constexpr double kFastestWave = 50.0;  // [m/s]
 // Instead, springs keep this speed: the weight of a metre of cloth compresses them by g L / c^2 = 1.6 %.
 constexpr double kKeptWaveOfCloth = 25.0;  // [m/s]
+// Folds and hems of a quarter of a metre swing at this frequency. Kelvin-Voigt dampers have the loss factor of a material at one
+// frequency only: at higher ones more, at lower ones less.
+constexpr double kSwing = 2.0;  // [Hz]
 // Angle bends of a rope shorten its springs, which must be stiffer for it: see weak_springs in simulation/settings.
 constexpr double kKeptWaveOfRope = 60.0;  // [m/s]
 
@@ -37,6 +40,7 @@ struct Sheet {
   Sourced tensile;    // of structural springs [N/m]
   Sourced shear;      // stiffness G [N/m]
   Sourced bending;    // flexural rigidity [N m]
+  Sourced loss;       // loss factor of bending
   Sourced thickness;  // [m]
   Friction friction;
 };
@@ -45,20 +49,20 @@ struct Sheet {
 struct Rope {
   std::string name;
   std::string what;
-  Sourced diameter;          // [m]
-  Sourced density;           // / d^2 [kg/m^3]
-  Sourced tensile;           // EA / d^2 [Pa]
-  Sourced bending;           // EI / (EA d^2) [1]
-  double bend_damping_time;  // [s]
+  Sourced diameter;  // [m]
+  Sourced density;   // / d^2 [kg/m^3]
+  Sourced tensile;   // EA / d^2 [Pa]
+  Sourced bending;   // EI / (EA d^2) [1]
+  Sourced loss;      // loss factor of bending
   Friction friction;
 };
 
 struct Block {
   std::string name;
   std::string what;
-  Sourced density;       // [kg/m^3]
-  Sourced young;         // [Pa]
-  Sourced damping_time;  // [s]
+  Sourced density;  // [kg/m^3]
+  Sourced young;    // [Pa]
+  Sourced damping;  // ratio of the breathing motion
   Friction friction;
   bool preserves_volume = false;
 };
@@ -66,6 +70,12 @@ struct Block {
 std::string number(double value) { return format_number(value, 4); }
 
 double rounded(double value) { return std::stod(format_number(value, 4)); }
+
+/// The damping time [s] that gives a loss factor at kSwing.
+MaterialValue bend_damping(const Sourced& loss) {
+  return {"springs.bend.damping_time", std::stod(format_number(loss.value / (2.0 * std::numbers::pi * kSwing), 2)), "s",
+          loss.source + "; a loss factor of " + number(loss.value) + " at " + number(kSwing) + " Hz, the swing of a hem"};
+}
 
 void add_friction(const Friction& friction, std::vector<MaterialValue>& values) {
   values.push_back({"static_friction", friction.at_rest, "1", friction.source});
@@ -98,7 +108,7 @@ Material cloth(const Sheet& sheet) {
                        .value_or(MaterialValue{"springs.shear.modulus", shear, "N/m", sheet.shear.source}));
   values.push_back({"springs.shear.damping_time", 1e-4, "s", time});
   values.push_back({"springs.bend.modulus", sheet.bending.value, "N m", sheet.bending.source});
-  values.push_back({"springs.bend.damping_time", 1e-3, "s", time});
+  values.push_back(bend_damping(sheet.loss));
   values.push_back({"thickness", sheet.thickness.value, "m", sheet.thickness.source});
   add_friction(sheet.friction, values);
   return material;
@@ -120,8 +130,7 @@ Material rope(const Rope& rope) {
   values.push_back(structural);
   values.push_back({"springs.structural.damping_time", 5e-5, "s", "chosen: damps motion that is fast for the rope's segments"});
   values.push_back({"springs.bend.modulus", rounded(rope.bending.value * tensile * d * d), "N m^2", rope.bending.source, 4});
-  values.push_back(
-      {"springs.bend.damping_time", rope.bend_damping_time, "s", "chosen: damps motion that is fast for the rope's segments"});
+  values.push_back(bend_damping(rope.loss));
   values.push_back({"thickness", d / 2.0, "m", "chosen: half the diameter, so that the surface touches", 1});
   add_friction(rope.friction, values);
   return material;
@@ -139,9 +148,9 @@ Material solid(const Block& block) {
   values.push_back({"density", block.density.value, "kg/m^3", block.density.source});
   const double young = block.young.value * (block.preserves_volume ? kSpringsOfKeptVolume : 1.0);
   values.push_back({"springs.structural.modulus", rounded(young * 10.0 / 17.0), "Pa", block.young.source});
-  values.push_back({"springs.structural.damping_time", block.damping_time.value, "s", block.damping_time.source});
+  values.push_back({"springs.structural.damping_ratio", block.damping.value, "1", block.damping.source});
   values.push_back({"springs.shear.modulus", rounded(young * 36.0 / 85.0), "Pa", block.young.source});
-  values.push_back({"springs.shear.damping_time", block.damping_time.value, "s", block.damping_time.source});
+  values.push_back({"springs.shear.damping_ratio", block.damping.value, "1", block.damping.source});
   values.push_back({"thickness", 2e-3, "m", "chosen: a gap that a fall of a second crosses in several steps"});
   add_friction(block.friction, values);
   material.preserves_volume = block.preserves_volume;
@@ -160,6 +169,12 @@ std::vector<Material> make_materials() {
   };
   const auto rubbing = [&](const std::string& of) { return chosen("no coefficient was found; " + of); };
   const std::string common = "common for cloth on a smooth surface";
+  const std::string yarns =
+      "the friction of yarns: 2HB of Kawabata's test is about 0.4 B / cm, which is 0.5 to 1 in folds of 2 to 4 cm radius";
+  const auto strands = [&](const std::string& how) {
+    return chosen("the friction of strands, " + how + "; no measurement was found");
+  };
+  const std::string impact = "; a ball meets the floor six to nine times slower than it breathes, with a loss factor of ";
 
   std::vector<Material> all;
   all.push_back(cloth({
@@ -170,6 +185,7 @@ std::vector<Material> make_materials() {
                           "quoted by the notes of an open-source garment project")},
       {56.0, chosen("twice the shear stiffness G = 56 N/m (1 gf/(cm deg)), usual for shirting")},
       {2.37e-5, published(matsudaira + hysteresis)},
+      {0.7, chosen(yarns)},
       {2e-3, gap("0.497 mm are measured (Matsudaira et al. 2015" + quoted + ")")},
       {0.30, 0.35, rubbing(common)},
   }));
@@ -180,6 +196,7 @@ std::vector<Material> make_materials() {
       {8000.0, chosen("6 % of extension under 490 N/m")},
       {12.0, chosen("twice the shear stiffness G = 12 N/m (0.2 gf/(cm deg)), usual for filament weaves")},
       {2.55e-6, published(matsudaira + hysteresis)},
+      {0.6, chosen("filaments slide more easily than staple fibre; " + yarns)},
       {2e-3, gap("0.226 mm are measured (Matsudaira et al. 2015" + quoted + ")")},
       {0.25, 0.28, rubbing("lower than cotton")},
   }));
@@ -193,6 +210,7 @@ std::vector<Material> make_materials() {
        published("twice the shear stiffness G = 32 N/m (0.575 gf/(cm deg)), suitings, Fan, Yu and Hunter 2004, table 1.12, as "
                  "quoted by the notes of an open-source garment project")},
       {9.81e-6, published(matsudaira + hysteresis)},
+      {0.6, chosen("wool recovers better than cotton; " + yarns)},
       {2e-3, gap("0.407 mm are measured (Matsudaira et al. 2015" + quoted + ")")},
       {0.30, 0.35, rubbing(common)},
   }));
@@ -205,6 +223,7 @@ std::vector<Material> make_materials() {
        published("twice the shear stiffness G = 122 N/m (2.18 gf/(cm deg)), fabric A of Kumari and Khurana 2016, J. Textiles "
                  "4614168, table 5")},
       {7e-5, chosen("drapes within the 70 to 90 % of denims; a lighter one has 3.05e-5 (Kumari and Khurana 2016, fabric A)")},
+      {0.8, chosen("a dense twill; " + yarns)},
       {2e-3, gap("1.07 mm are measured (Kumari and Khurana 2016, fabric A)")},
       {0.40, 0.50, rubbing("rougher than cotton")},
   }));
@@ -217,6 +236,7 @@ std::vector<Material> make_materials() {
       {200.0, chosen("a knit stretches by tens of percent under 50 N/m")},
       {10.0, chosen("twice the shear stiffness G = 10 N/m, low as of knits")},
       {1.4e-6, chosen("a bending length of 1 cm")},
+      {0.7, chosen("loops slide on each other; " + yarns)},
       {2e-3, gap("a jersey is about 0.6 mm thick")},
       {0.35, 0.40, rubbing("softer and fuller than cotton")},
   }));
@@ -229,6 +249,7 @@ std::vector<Material> make_materials() {
       {2.2e-5,
        published("upper end of 9.2 to 22 (read as uN m, because the bending lengths then fit), sheep leathers, Memon et al. "
                  "2021, Materials 14(16), 4553; chosen because softer shear springs make it drape more")},
+      {0.5, chosen("a mat of fibres; no measurement was found")},
       {2e-3, gap("0.64 to 0.96 mm are measured (Memon et al. 2021)")},
       {0.45, 0.55, rubbing("it grips more than cotton")},
   }));
@@ -239,6 +260,7 @@ std::vector<Material> make_materials() {
       {2000.0, chosen("no measurement was found")},
       {300.0, chosen("twice the shear stiffness G = 300 N/m; no measurement was found")},
       {1e-4, chosen("no measurement was found; a strip of 10 cm bends by 4 cm under its weight")},
+      {0.7, chosen("a mat of fibres; no measurement was found")},
       {2e-3, gap("it is 1.5 mm thick")},
       {0.35, 0.40, rubbing("as wool")},
   }));
@@ -249,6 +271,7 @@ std::vector<Material> make_materials() {
       {4e5, chosen("E h of 4 GPa and 0.1 mm, near handbook values")},
       {1.5e5, chosen("twice the shear stiffness G = 150 kN/m, as of an isotropic sheet")},
       {3.3e-4, chosen("E h^3 / 12 of 4 GPa and 0.1 mm, near handbook values")},
+      {0.1, chosen("far below cloth; no measurement was found")},
       {1e-3, gap("paper is 0.1 mm thick")},
       {0.35, 0.45, rubbing("common for paper")},
   }));
@@ -261,6 +284,7 @@ std::vector<Material> make_materials() {
       {317.0,
        chosen("3/4 of E h, which makes the sheet isotropic; E = 1.69 MPa from the hardness by Gent's formula of 1958, h = 0.5 mm")},
       {2.3e-5, chosen("E h^3 / 9 of an incompressible plate of 1.69 MPa and 0.5 mm")},
+      {0.15, chosen("near handbook values of filled rubber, 0.1 to 0.2")},
       {2e-3, gap("it is 0.5 mm thick")},
       {0.80, 0.90, rubbing("near handbook values of rubber on dry surfaces")},
   }));
@@ -273,7 +297,7 @@ std::vector<Material> make_materials() {
       {650.0, chosen("650 kg/m^3 d^2, near handbook values of manila rope")},
       {3.0e8, chosen("300 MPa d^2, below the secant at rupture of handbook values")},
       {0.03 / 16.0, chosen("3 % of EA d^2 / 16" + free_wires)},
-      1e-4,
+      {0.5, strands("of rough fibre")},
       {0.40, 0.50, rubbing("rough fibre")},
   }));
   all.push_back(rope({
@@ -283,7 +307,7 @@ std::vector<Material> make_materials() {
       {676.0, published("676 kg/m^3 d^2, mooring rope, program moorwire of Mooring-Line-Properties")},
       {1.18e8, published("118 MPa d^2, mooring rope, program moorwire of Mooring-Line-Properties")},
       {0.02 / 16.0, chosen("2 % of EA d^2 / 16" + free_wires)},
-      1e-4,
+      {0.4, strands("of smooth fibre")},
       {0.20, 0.25, rubbing("smooth fibre")},
   }));
   all.push_back(rope({
@@ -293,7 +317,7 @@ std::vector<Material> make_materials() {
       {3990.0, published("3990 kg/m^3 d^2, program moorwire of Mooring-Line-Properties; catalogues of ropes 7x19 have 3810")},
       {4.04e10, published("40.4 GPa d^2, program moorwire of Mooring-Line-Properties")},
       {0.01 / 16.0, chosen("1 % of EA d^2 / 16" + free_wires)},
-      1e-4,
+      {0.2, strands("of greased wires")},
       {0.16, 0.20, rubbing("greased steel")},
   }));
   const double round = std::numbers::pi / 4.0;
@@ -306,7 +330,7 @@ std::vector<Material> make_materials() {
        published("E = 3.89 GPa, Robbins, Chemical and Physical Behavior of Human Hair, as quoted on the list biomch-l "
                  "in 1998")},
       {1.0 / 16.0, published("EI of a round rod of E = 3.89 GPa, Robbins, as quoted on the list biomch-l in 1998")},
-      1e-5,
+      {0.05, chosen("a solid fibre; no measurement was found")},
       {0.20, 0.25, rubbing("along the scales")},
   }));
 
@@ -320,7 +344,7 @@ std::vector<Material> make_materials() {
       {15200.0, published("E = 15.2 kPa, from the power law between 4.34 kPa at 20:1 and 277 kPa at 2:1, Bonavia 2025, arXiv "
                           "2512.20502" +
                           kept)},
-      {3e-3, chosen("a cube of 0.3 m wobbles for about a second")},
+      {0.1, chosen("a cube of 0.3 m wobbles for about a second")},
       {0.25, 0.30, rubbing("wet gels slip")},
       true,
   }));
@@ -331,7 +355,7 @@ std::vector<Material> make_materials() {
       {53000.0, published("E = 53 kPa, from the power law between 4.34 kPa at 20:1 and 277 kPa at 2:1, Bonavia 2025, arXiv "
                           "2512.20502" +
                           kept)},
-      {1e-3, chosen("a cube of 0.3 m wobbles for about a second")},
+      {0.1, chosen("a cube of 0.3 m wobbles for about a second")},
       {0.25, 0.30, rubbing("wet gels slip")},
       true,
   }));
@@ -340,7 +364,7 @@ std::vector<Material> make_materials() {
       "a flexible polymer foam",
       {30.0, chosen("near handbook values of 16 to 35 kg/m^3")},
       {3.0e5, chosen("E = 0.3 MPa, near handbook values of 0.25 to 1 MPa" + isotropic)},
-      {5e-5, chosen("damps motion that is fast for the cells; a larger one needs smaller steps")},
+      {0.8, chosen("a ball rebounds to about half of its height, as in the test of foams, ASTM D3574" + impact + "0.2")},
       {0.50, 0.60, rubbing("rough open cells")},
   }));
   all.push_back(solid({
@@ -348,7 +372,7 @@ std::vector<Material> make_materials() {
       "rubber, Shore A 50",
       {1100.0, chosen("near handbook values of filled rubber")},
       {2.46e6, chosen("E = 2.46 MPa, from the hardness by Gent's formula of 1958" + isotropic)},
-      {1e-4, chosen("damps motion that is fast for the cells; a larger one needs smaller steps")},
+      {0.2, chosen("a ball rebounds to three quarters of its height, usual for filled rubber" + impact + "0.05")},
       {0.80, 0.90, rubbing("near handbook values of rubber on dry surfaces")},
   }));
   return all;

@@ -102,9 +102,10 @@ void fill_spring(const std::string& key, double value, Json& body, std::array<bo
   if (spring == nullptr) return;
   if (bends) fill(*spring, {"model"}, "model", "angle");
   if (!key.ends_with(".modulus")) {
-    fill(*spring, {"damping", "damping_ratio", "damping_time"}, "damping_time", value);
+    const char* const name = key.c_str() + dot + 1;
+    fill(*spring, {"damping", "damping_ratio", "damping_time"}, name, value);
     const auto number = std::ranges::find(kSpringKindNames, kind) - kSpringKindNames.begin();
-    preset_damps[static_cast<std::size_t>(number)] = is_value(*spring, "damping_time", value) && !groups_give_damping(*spring);
+    preset_damps[static_cast<std::size_t>(number)] = is_value(*spring, name, value) && !groups_give_damping(*spring);
   } else if (!bends || (*spring)["model"] != "spring") {
     fill(*spring, {"modulus", "stiffness"}, "modulus", value);
   }

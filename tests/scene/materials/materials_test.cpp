@@ -212,6 +212,10 @@ TEST(Materials, DampersThatTheSceneGivesAreNotTheMaterials) {
   EXPECT_EQ(again.bodies.front().preset_damps, (Damps{true, true, true}));
   EXPECT_TRUE(again.bodies.front().preset_mass);
   EXPECT_FALSE(folder.read(scene_of(cotton, R"(, "density": 3)")).bodies.front().preset_mass);
+  const Material& foam = *find_material("foam");
+  EXPECT_EQ(folder.read(scene_of(foam)).bodies.front().preset_damps, (Damps{true, true, false}));
+  EXPECT_EQ(folder.read(scene_of(foam, R"(, "springs": {"structural": {"damping_ratio": 0.1}})")).bodies.front().preset_damps,
+            (Damps{false, true, false}));
 }
 
 // EI and D are constants of angles, with other units than EA: broken_scenes.h has the scenes that lack a stiffness of their own.
@@ -331,7 +335,7 @@ TEST(Materials, TetrahedraTakeYoungsModulusAndNoShearSprings) {
       R"({"duration": 1, "bodies": {"thing": {"shape": {"type": "tetrahedra", "file": "a.msh"}, "material": "foam"}}})";
   const BodyScene body = folder.read(scene).bodies.front();
   EXPECT_NEAR(body.springs.structural->value, 3.0e5, 5e-4 * 3.0e5) << "foam; values of the table have four digits";
-  EXPECT_EQ(body.springs.structural->damping_time, find_material("foam")->find("springs.structural.damping_time")->value);
+  EXPECT_EQ(body.springs.structural->damping_ratio, find_material("foam")->find("springs.structural.damping_ratio")->value);
   EXPECT_FALSE(body.springs.shear);
   EXPECT_FALSE(body.springs.bend);
   EXPECT_EQ(folder.read(scene, {"bodies.thing.springs.structural.modulus=7"}).bodies.front().springs.structural->value, 7.0);
