@@ -4,11 +4,11 @@
 
 namespace sprung {
 
-void collect_reactions(const SpringNetwork& network, const Activity& activity, SimulationState& state) {
+void collect_reactions(const std::vector<Pin>& pins, const Activity& activity, SimulationState& state) {
   if (!state.impulses.on()) return;
-  for (Index i = 0; i < network.particle_count(); ++i) {
+  for (Index i = 0; i < state.impulses.on_pinned.cols(); ++i) {
     if (!activity.is_pinned(i)) continue;
-    const std::string& name = network.pins[activity.pin_of[i]].name;
+    const std::string& name = pins[activity.pin_of[i]].name;
     Vector3& impulse = state.reactions.impulses.try_emplace(name, Vector3::Zero()).first->second;
     impulse -= state.impulses.on_pinned.col(i);
   }
@@ -19,7 +19,7 @@ std::vector<Reaction> mean_reactions(const SpringNetwork& network, const Simulat
   SimulationState all;
   all.impulses = state.impulses;
   all.reactions = state.reactions;
-  collect_reactions(network, network.activity, all);
+  collect_reactions(network.pins, network.activity, all);
   std::vector<Reaction> reactions;
   const auto append = [&](const std::string& name) {
     const auto found = all.reactions.impulses.find(name);

@@ -14,7 +14,7 @@ namespace sprung {
 // the stretch limit, constraints and contact.
 
 /// Adds the recorded impulses on particles to the pins that hold them in an activity, and sets these to zero.
-void collect_reactions(const SpringNetwork& network, const Activity& activity, SimulationState& state);
+void collect_reactions(const std::vector<Pin>& pins, const Activity& activity, SimulationState& state);
 
 /// The mean forces over `duration` [s] of all pins of the network and then of its attachments, each in the order in which they were
 /// added. Zero if the duration is zero.

@@ -32,7 +32,6 @@ struct Simulator::Implementation {
   template <class Change>
   void change_awake(const Change& change);
   void change_activity(const Activity& activity);
-  void follow_conditions();
   void change_model(std::shared_ptr<const Model> next);
   void change_control(Control next);
 
@@ -61,20 +60,13 @@ void Simulator::Implementation::change_awake(const Change& change) {
     stepper().restore(before);
     throw;
   }
-  stepper().note_change();
 }
 
 void Simulator::Implementation::change_activity(const Activity& activity) {
   const BeforeTransition before = stepper().before_transition();
   state.activity = activity;
   stepper().make_transition(before);
-}
-
-/// Lets forces know gravity and wind. All particles wake in the next step.
-void Simulator::Implementation::follow_conditions() {
-  scratch->follow_conditions(control);
-  state.energy.is_stale = true;
-  stepper().wake_all();
+  stepper().note_change();
 }
 
 void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) {
@@ -156,7 +148,7 @@ void Simulator::set_gravity(const Vector3& acceleration) {
     return;
   }
   implementation_->control.gravity = acceleration;
-  implementation_->follow_conditions();
+  implementation_->stepper().follow_conditions();
 }
 
 void Simulator::set_air(double drag, const Wind& wind) {
@@ -168,7 +160,7 @@ void Simulator::set_air(double drag, const Wind& wind) {
     return;
   }
   implementation_->control.wind = wind;
-  implementation_->follow_conditions();
+  implementation_->stepper().follow_conditions();
 }
 
 void Simulator::set_stretch_limit(const std::optional<StretchLimitSettings>& limit) {
@@ -253,6 +245,7 @@ std::size_t Simulator::pin(const std::vector<Index>& particles, const std::strin
       if (!state.activity.is_pinned(i)) state.activity.pin_of[i] = static_cast<Index>(number);
     }
     implementation_->stepper().make_transition(before);
+    implementation_->stepper().note_change();
   });
   return number;
 }

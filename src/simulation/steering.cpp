@@ -86,17 +86,19 @@ void Stepper::steer(std::vector<SteeredMotion> Steering::*list, std::size_t numb
   poses.push_back({end, target});
   steered->poses = std::move(poses);
   if (is_new) {
+    const std::vector<char> sleepers = state_.rest.sleepers;  // without those that a change woke
     make_transition(before);
+    state_.rest.sleepers = sleepers;
   } else {
     follow_steering();
   }
+  wake_driven();
 }
 
 void Stepper::follow_steering() {
   scratch_.follow(model_, control_, state_);
   work().pin_paths.register_pins(state_);
   move_pins(time());
-  wake_driven();
 }
 
 }  // namespace sprung

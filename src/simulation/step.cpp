@@ -74,9 +74,8 @@ std::optional<StepReport> Stepper::attempt(PlanReason reason) {
     if (obstacles().moves()) choose_sleepers();
     return StepReport{};
   }
-  // Integrators keep the sum of constant forces, and positions before time 0.
-  const bool is_start = steps_done(state_) == 0.0;
-  if (std::exchange(scratch_.conditions_changed, false) && (is_start || are_constant(work().forces))) resume_integrator();
+  // Integrators keep the sum of constant forces.
+  if (std::exchange(scratch_.conditions_changed, false) && are_constant(work().forces)) resume_integrator(dt());
   scratch_.begin = state_;
   has_begun_ = true;
   const bool any_sleeps = !network().activity.asleep.empty();
@@ -235,7 +234,7 @@ void Stepper::substep_changed(double dt_before) {
   if (dt() == dt_before) return;
   step_length_changed();
   move_pins(time());
-  if (steps_done(state_) == 0.0) {
+  if (is_start()) {
     integrator().start(state_, work().forces, dt());
   } else {
     integrator().step_changed(state_, work().forces, dt_before, dt());

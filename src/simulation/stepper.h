@@ -12,6 +12,7 @@ namespace sprung {
 /// What a transition needs of the time before it.
 struct BeforeTransition {
   Activity activity;
+  std::vector<Pin> pins;   ///< that the numbers of the activity mean
   Points last_velocities;  ///< of pinned particles, mean of the last step [m/s], 3 x n
   double dt = 0.0;         ///< [s]
   double excess = 0.0;     ///< over the stretch limit
@@ -37,10 +38,13 @@ class Stepper {
   /// Lets a new workspace begin with the state.
   void enter();
 
+  /// Lets forces know gravity and wind. All particles wake in the next step.
+  void follow_conditions();
+
   [[nodiscard]] BeforeTransition before_transition() const;
   /// Lets the scratch follow a state whose springs, pins or sleepers changed.
   void make_transition(const BeforeTransition& before);
-  /// Takes a state over from a former model of the same particles, or a former control.
+  /// Takes a state over from a former model of the same particles, or a former control. Records energies anew.
   void inherit(const BeforeTransition& before, const Model& former);
 
   void wake_all();
@@ -52,6 +56,7 @@ class Stepper {
   void begin_recording();
   void note_change() { EnergyWatch::note_change(energies(), state_.energy); }
 
+  [[nodiscard]] bool is_start() const { return steps_done(state_) == 0.0; }
   [[nodiscard]] double dt() const { return settings().step / state_.substeps; }
   [[nodiscard]] double time() const { return steps_done(state_) * settings().step; }
   [[nodiscard]] ObstacleFrame obstacles_now() const { return {obstacles(), time(), time()}; }
@@ -93,7 +98,7 @@ class Stepper {
   void change_sleep(const BeforeTransition& before);
   [[nodiscard]] bool change_pins(const BeforeTransition& before);
   void keep_handovers();
-  void resume_integrator();
+  void resume_integrator(double dt);
 
   // Sleep.
   [[nodiscard]] bool may_sleep() const;

@@ -76,6 +76,7 @@ void Stepper::begin_recording() {
 
 BeforeTransition Stepper::before_transition() const {
   BeforeTransition before{.activity = state_.activity,
+                          .pins = network().pins,
                           .last_velocities = state_.v,
                           .dt = dt(),
                           .excess = excess_of(constraints(), state_.x),
@@ -107,6 +108,7 @@ void Stepper::inherit(const BeforeTransition& before, const Model& former) {
   }
   drop_unknown_links(former.network(), network(), state_);
   finish_transition(before, former.settings().integrator.index() != settings().integrator.index());
+  note_change();
 }
 
 /// `restarts`: the integrator is of another kind.
@@ -123,7 +125,7 @@ void Stepper::finish_transition(const BeforeTransition& before, bool restarts) {
   if (restarts) {
     integrator().start(state_, work().forces, before.dt);
   } else {
-    integrator().resume(state_, work().forces, before.dt);
+    resume_integrator(before.dt);
   }
   work().planner.note_change(pins_changed, state_);
   substep_changed(before.dt);
@@ -157,7 +159,7 @@ bool Stepper::change_pins(const BeforeTransition& before) {
     if (state_.impulses.on()) record_gain(i, v_before.col(i));
     integrator().velocity_changed(state_, i, before.dt);
   }
-  collect_reactions(network(), before.activity, state_);
+  collect_reactions(before.pins, before.activity, state_);
   for (Index i = 0; i < network().particle_count(); ++i) {
     const Index pin = state_.activity.pin_of[i];
     if (pin == kNone || network().pins[pin].moves()) continue;
@@ -181,26 +183,31 @@ void Stepper::keep_handovers() {
 
 void Stepper::restore(const SimulationState& former) {
   state_ = former;
-  if (scratch_.follow(model_, control_, state_)) {
-    enter();
-  } else {
-    work().pin_paths.register_pins(state_);
-    load();
-  }
+  const bool has_new_integrator = scratch_.follow(model_, control_, state_);
+  work().pin_paths.register_pins(state_);
+  load();
+  if (has_new_integrator || is_start()) resume_integrator(dt());
 }
 
 void Stepper::enter() {
   work().pin_paths.register_pins(state_);
   load();
-  resume_integrator();
+  resume_integrator(dt());
+}
+
+void Stepper::follow_conditions() {
+  scratch_.follow_conditions(control_);
+  state_.energy.is_stale = true;
+  if (is_start()) resume_integrator(dt());
+  wake_all();
 }
 
 /// At time 0 the forces determine Verlet's positions one step ago.
-void Stepper::resume_integrator() {
-  if (steps_done(state_) == 0.0) {
-    integrator().start(state_, work().forces, dt());
+void Stepper::resume_integrator(double dt) {
+  if (is_start()) {
+    integrator().start(state_, work().forces, dt);
   } else {
-    integrator().resume(state_, work().forces, dt());
+    integrator().resume(state_, work().forces, dt);
   }
 }
 

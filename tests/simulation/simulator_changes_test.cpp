@@ -319,6 +319,42 @@ TEST(SimulatorChanges, AnExternalForceActsUntilItIsRemoved) {
   EXPECT_NEAR(simulator.positions()(1, 0), height - 0.5 * kGravity * 0.25, 3.0 * kGravity * kStep * 0.5);
 }
 
+// Verlet's positions before time 0 depend on the forces.
+TEST(SimulatorChanges, AtTime0OneGravityIsAsGoodAsAnother) {
+  const Vector3 upwards(0.0, 3.0, 0.0);
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    for (const bool adds_force : {true, false}) {
+      Simulator built(one_particle({0.0, 1.0, 0.0}), {.step = kStep, .gravity = upwards, .integrator = integrator}, {ground()});
+      Simulator changed(one_particle({0.0, 1.0, 0.0}), {.step = kStep, .integrator = integrator}, {ground()});
+      changed.set_gravity(upwards);
+      for (Simulator* simulator : {&built, &changed}) {
+        if (adds_force) {
+          simulator->add_force(std::make_shared<EvenForce>(Vector3::Zero()));
+        } else {
+          simulator->set_obstacle_material(0, {.thickness = 0.01});
+        }
+        run(*simulator, 0.01);
+      }
+      EXPECT_EQ(changed.positions(), built.positions()) << integrator.index() << ", " << adds_force;
+    }
+  }
+}
+
+TEST(SimulatorChanges, AFirstStepThatIsStoppedChangesNothing) {
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    Simulator simulator(one_particle({0.0, 1.0, 0.0}), {.step = kStep, .integrator = integrator});
+    const SimulationState start = simulator.state();
+    simulator.set_gravity({0.0, 3.0, 0.0});
+    const SimulationState state = simulator.state();
+    EXPECT_EQ(Simulator(simulator).state(), state);
+    simulator.stop_when([] { return true; });
+    EXPECT_THROW(simulator.step(), StoppedError);
+    EXPECT_EQ(simulator.state(), state);
+    simulator.set_gravity({0.0, -kGravity, 0.0});
+    EXPECT_EQ(simulator.state().x_previous, start.x_previous);
+  }
+}
+
 /// Pulls particle 0 to the origin.
 class Anchor final : public Force {
  public:

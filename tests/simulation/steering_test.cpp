@@ -13,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <string>
 #include <thread>
 #include <utility>
@@ -329,6 +330,55 @@ TEST_F(SteeredSleep, ReleaseAndPinWakeIt) {
   EXPECT_GT(simulator_.positions()(1, 5), 0.05);
 }
 
+TEST_F(SteeredSleep, EndsWithTheFirstMoveOfTheGround) {
+  ASSERT_TRUE(sleeps(simulator_, 0));
+  simulator_.move_obstacle(0, pose_at({0.0, 0.02, 0.0}));
+  simulator_.step();
+  EXPECT_FALSE(sleeps(simulator_, 0));
+  EXPECT_GT(simulator_.positions().row(1).minCoeff(), 0.02);
+}
+
+TEST_F(SteeredSleep, AFirstMoveFarAwayKeepsAwakeWhatAChangeWoke) {
+  ASSERT_TRUE(sleeps(simulator_, 0));
+  simulator_.set_gravity(Vector3::Zero());
+  simulator_.move_obstacle(1, pose_at({3.1, 0.5, 0.0}));
+  simulator_.step();
+  EXPECT_FALSE(sleeps(simulator_, 0));
+}
+
+// A cloth sleeps on the ground. What holds its first corner lifts it by 5 cm. A rod keeps its length of about 1 m to a thousandth.
+TEST(FirstMove, WakesWhatAPinAFollowerOrARodHolds) {
+  Pin follower = hand({0});
+  follower.obstacle = 1;
+  for (const std::string holder : {"pin", "follower", "rod"}) {
+    SCOPED_TRACE(holder);
+    BodyShape shape = make_cloth({.size = {1.0, 1.0}, .resolution = {4, 4}},
+                                 {.structural = SpringMaterial{.value = 200.0, .damping = 0.01}, .shear = {}, .bend = {}});
+    set_total_mass(shape, 0.2);
+    place(shape, pose_at({0.0, 0.01, 0.0}, {-90.0, 0.0, 0.0}), Vector3::Zero());
+    NetworkBuilder builder;
+    builder.add_body("cloth", shape, kRough);
+    const Vector3 corner = shape.positions[0];
+    if (holder == "rod") {
+      builder.add_attachment({.name = "rod", .particles = {0}, .second = ObstacleEnd{1}});
+    } else {
+      builder.add_pin(holder == "pin" ? hand({0}) : follower);
+    }
+    Simulator simulator(builder.build(), settings_of(), {ground(kRough), ball(corner + Vector3(0.0, 1.1, 0.0))});
+    while (!sleeps(simulator, 0) && simulator.time() < 3.0) simulator.step();
+    ASSERT_TRUE(sleeps(simulator, 0));
+    const double height = simulator.positions()(1, 0);
+    if (holder == "pin") {
+      simulator.move_pin(0, shifted(simulator.pin_pose(0), {0.0, 0.05, 0.0}));
+    } else {
+      simulator.move_obstacle(1, shifted(simulator.obstacle_pose(1), {0.0, 0.05, 0.0}));
+    }
+    simulator.step();
+    EXPECT_FALSE(sleeps(simulator, 0));
+    EXPECT_NEAR(simulator.positions()(1, 0), height + 0.05, 1e-3);
+  }
+}
+
 // Copies and states.
 
 TEST(SteeredState, ACopyGoesOnAsItsOriginal) {
@@ -485,6 +535,27 @@ TEST(MovePin, GoesOnInAModelWithOtherPins) {
   EXPECT_NEAR(simulator.positions()(1, 0), 0.042, 32.0 * kEpsilon);
   EXPECT_NEAR(simulator.positions()(1, 5), 0.021, 32.0 * kEpsilon);
   EXPECT_EQ(simulator.positions().col(10), positions.col(10)) << "the new pin takes it where it is";
+}
+
+// Forces belong to names, whatever the numbers of the pins.
+TEST(MovePin, ForcesGoOnInAModelWithOtherPins) {
+  const auto named = [](const char* name, Index particle) {
+    Pin pin = hand({particle});
+    pin.name = name;
+    return pin;
+  };
+  SimulatorSettings settings = settings_of();
+  settings.record_forces = true;
+  Simulator simulator(rope({named("left", 0), named("right", 10), named("middle", 5)}), settings);
+  simulator.pin({2}, "gripper");
+  run(simulator, 100 * kStep);
+  std::map<std::string, Vector3> before;
+  for (const Reaction& reaction : simulator.reactions()) before[reaction.name] = reaction.force;
+  simulator.continue_with(rope({named("middle", 5), named("left", 0)}), simulator.settings());
+  const std::vector<Reaction> after = simulator.reactions();
+  ASSERT_EQ(after.size(), 3U);
+  for (const Reaction& reaction : after) EXPECT_EQ(reaction.force, before.at(reaction.name)) << reaction.name;
+  EXPECT_NE(before.at("left"), before.at("middle"));
 }
 
 TEST(AddedPin, MayHoldAllParticles) {
