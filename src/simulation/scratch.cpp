@@ -16,8 +16,17 @@ Structure::Structure(const SpringNetwork& network, const SimulatorSettings& sett
   if (settings.perturb) symmetry.emplace(network, settings.seed);
 }
 
+Touched::Touched(const Control& control) {
+  const auto note = [&](const std::optional<std::vector<Index>>& touched) {
+    any = any || !touched;
+    if (touched) particles.insert(particles.end(), touched->begin(), touched->end());
+  };
+  for (const auto& force : control.forces) note(force->touched());
+  for (const auto& constraint : control.constraints) note(constraint->touched());
+}
+
 Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
-                     const ObstacleSet& obstacles, const Control& control, Structure& structure)
+                     const ObstacleSet& obstacles, const Control& control, const Touched& touched, Structure& structure)
     : forces(
           network_forces(network, settings, splits_dampers(settings, bounds) ? MaterialDampers::apart : MaterialDampers::within)),
       attachments(network.attachments.empty()
@@ -36,15 +45,10 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
     integrator->set_dampers(dampers_of_materials(network, most), std::min(most, bounds.material_damping));
   }
   touched_groups.assign(structure.groups.groups.size(), 0);
-  for (const auto& force : control.forces) note_touched(force->touched(), structure.groups);
-  for (const auto& constraint : control.constraints) note_touched(constraint->touched(), structure.groups);
+  touches_any = touched.any;
+  for (const Index i : touched.particles) touched_groups[structure.groups.group_of[i]] = 1;
   add_forces(network, settings, obstacles, control);
   add_constraints(network, control);
-}
-
-void Workspace::note_touched(const std::optional<std::vector<Index>>& particles, const SleepGroups& groups) {
-  touches_any = touches_any || !particles;
-  for (const Index i : particles.value_or(std::vector<Index>())) touched_groups[groups.group_of[i]] = 1;
 }
 
 /// Those that network_forces() does not make.
@@ -66,7 +70,7 @@ void Workspace::add_constraints(const SpringNetwork& network, const Control& con
 }
 
 Scratch::Scratch(const Model& model, const Control& control, const SimulationState& state)
-    : settings(model.settings()), obstacles(model.obstacles()) {
+    : settings(model.settings()), obstacles(model.obstacles()), touched_(control) {
   for (std::size_t k = 0; k < control.obstacle_materials.size(); ++k) {
     obstacles.set_material(static_cast<Index>(k), control.obstacle_materials[k]);
   }
@@ -84,7 +88,7 @@ void Scratch::rebuild(const Model& model, const Control& control) {
   } else {
     structure.emplace(network, settings, obstacles);
   }
-  work.emplace(network, settings, model.bounds(), obstacles, control, *structure);
+  work.emplace(network, settings, model.bounds(), obstacles, control, touched_, *structure);
 }
 
 bool Scratch::follow(const Model& model, const Control& control, const SimulationState& state) {

@@ -33,11 +33,19 @@ struct Structure {
   std::optional<SymmetryBreaker> symmetry;  ///< none unless the settings ask for it
 };
 
+/// What the forces and constraints of a control touch.
+struct Touched {
+  explicit Touched(const Control& control);
+
+  std::vector<Index> particles;
+  bool any = false;  ///< whether they may touch any particle
+};
+
 /// The other objects that make a step.
 struct Workspace {
   /// Keeps references to the network, the settings, the obstacles and the structure. The bounds are those of the model.
   Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
-            const ObstacleSet& obstacles, const Control& control, Structure& structure);
+            const ObstacleSet& obstacles, const Control& control, const Touched& touched, Structure& structure);
 
   Forces forces;
   ContactForce* penalty = nullptr;         ///< null unless contact is by penalty
@@ -53,7 +61,6 @@ struct Workspace {
   bool touches_any = false;          ///< whether an added force or constraint may touch any particle
 
  private:
-  void note_touched(const std::optional<std::vector<Index>>& particles, const SleepGroups& groups);
   void add_forces(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles,
                   const Control& control);
   void add_constraints(const SpringNetwork& network, const Control& control);
@@ -66,7 +73,8 @@ struct Scratch {
   Scratch(const Scratch&) = delete;
 
   /// Follows the springs, the activity and the steering of the state. If springs or the activity changed, the workspace is a new
-  /// one, without memory. Returns whether it is.
+  /// one, without memory. Returns whether it is. Calls no code of the program's forces and constraints: they could throw. If memory
+  /// runs out, there is no workspace until the scratch follows a state again.
   bool follow(const Model& model, const Control& control, const SimulationState& state);
 
   /// Takes over gravity and wind. Costs nothing for each particle.
@@ -78,7 +86,7 @@ struct Scratch {
   bool conditions_changed = false;  ///< since the last step
   std::vector<Index> springs_left;  ///< the numbers in the model of its springs, ascending
   std::optional<Structure> structure;
-  std::optional<Workspace> work;  ///< like the structure, none only while it is made
+  std::optional<Workspace> work;  ///< like the structure, none only while it is made, and after it could not be made
   SimulationState begin;          ///< of the step
   SimulationState best;           ///< the end of its best attempt, while others are made
 
@@ -88,6 +96,7 @@ struct Scratch {
   void steer(const Model& model, const SimulationState& state);
   void rebuild(const Model& model, const Control& control);
 
+  Touched touched_;           ///< asked once: the control has a scratch of its own
   std::vector<char> broken_;  ///< springs of the model that `network` lacks
   Steering steering_;         ///< of which the network and the obstacles have the motions
 };

@@ -117,7 +117,7 @@ class Stepper {
   [[nodiscard]] const SpringNetwork& network() const { return scratch_.network; }
   [[nodiscard]] const SimulatorSettings& settings() const { return scratch_.settings; }
   [[nodiscard]] const ObstacleSet& obstacles() const { return scratch_.obstacles; }
-  [[nodiscard]] Workspace& work() const { return *scratch_.work; }
+  [[nodiscard]] Workspace& work() const { return scratch_.work.value(); }
   [[nodiscard]] Structure& structure() const { return *scratch_.structure; }
   [[nodiscard]] Integrator& integrator() const { return *work().integrator; }
   [[nodiscard]] StepConstraints& constraints() const { return work().constraints; }

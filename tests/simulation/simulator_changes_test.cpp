@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 
 namespace sprung {
 namespace {
@@ -352,6 +353,88 @@ TEST(SimulatorChanges, AFirstStepThatIsStoppedChangesNothing) {
     EXPECT_EQ(simulator.state(), state);
     simulator.set_gravity({0.0, -kGravity, 0.0});
     EXPECT_EQ(simulator.state().x_previous, start.x_previous);
+  }
+}
+
+/// Does nothing but throw where a test asks it to.
+class Faulty final : public Force {
+ public:
+  void add(const Kinematics&, Points&) const override {}
+  [[nodiscard]] bool is_constant() const override { return true; }
+  [[nodiscard]] std::optional<std::vector<Index>> touched() const override {
+    if (throws_touched) throw std::runtime_error("touched");
+    return std::vector<Index>{};
+  }
+  [[nodiscard]] double energy(const Points&) const override {
+    if (throws_energy) throw std::runtime_error("energy");
+    return 0.0;
+  }
+
+  bool throws_touched = false;
+  bool throws_energy = false;
+};
+
+TEST(SimulatorChanges, AForceThatThrowsAsItIsAddedIsNotAdded) {
+  for (const bool throws_energy : {true, false}) {
+    Simulator simulator(moving_cloth(), {.step = kStep});
+    run(simulator, 0.01);
+    const SimulationState state = simulator.state();
+    const auto faulty = std::make_shared<Faulty>();
+    (throws_energy ? faulty->throws_energy : faulty->throws_touched) = true;
+    EXPECT_THROW(simulator.add_force(faulty), std::runtime_error);
+    EXPECT_EQ(simulator.state(), state);
+    simulator.restore(state);
+    simulator.step();
+  }
+}
+
+TEST(SimulatorChanges, AForceThatThrowsInALaterChangeDoesNotStopTheRun) {
+  Simulator simulator(moving_cloth(), {.step = kStep});
+  const auto faulty = std::make_shared<Faulty>();
+  simulator.add_force(faulty);
+  run(simulator, 0.01);
+  const SimulationState state = simulator.state();
+  faulty->throws_energy = faulty->throws_touched = true;
+  EXPECT_THROW(simulator.pin({3}, "finger"), std::runtime_error);
+  EXPECT_EQ(simulator.state(), state);
+  simulator.step();
+  faulty->throws_energy = faulty->throws_touched = false;
+  simulator.pin({3}, "finger");
+  simulator.step();
+  EXPECT_TRUE(simulator.network().is_pinned(3));
+}
+
+// Coordinates beyond 3.4e38 are infinite in single precision, squares beyond 1.8e308 in double precision. Contact may keep bodies
+// from such speeds; else they diverge.
+TEST(SimulatorChanges, AGravityBeyondTheRangeOfNumbersDivergesAtMost) {
+  const auto rope = [](double x) {
+    return make_rope({.points = {{x, 1.0, 0.0}, {x + 1.0, 1.0, 0.0}}, .particles = 4, .length = {}},
+                     {.structural = SpringMaterial{.value = 100.0, .damping = 0.1}, .shear = {}, .bend = {}});
+  };
+  BodyShape shape = make_cloth({.size = {0.5, 0.5}, .resolution = {3, 3}},
+                               {.structural = SpringMaterial{.value = 200.0, .damping = 0.05}, .shear = {}, .bend = {}});
+  RigidTransform above = RigidTransform::Identity();
+  above.linear() = rotation_from_degrees({-90.0, 0.0, 0.0});
+  above.translation() = Vector3(0.0, 0.15, 0.0);
+  place(shape, above, Vector3::Zero());
+  NetworkBuilder builder;
+  for (auto& [name, body] : {std::pair("cloth", shape), std::pair("held", rope(0.0)), std::pair("free", rope(1.5))}) {
+    BodyShape with_mass = body;
+    set_total_mass(with_mass, 0.1);
+    builder.add_body(name, with_mass, {.thickness = 0.005});
+  }
+  builder.pin(9);
+  Obstacle deforming = testing::deforming_sheet(Vector3(0.8, 1.0, 1.2).asDiagonal());
+  deforming.rest_pose.translation() = Vector3(0.5, 0.8, 0.0);
+  for (const double gravity : {1e20, 1e40, 1e50, 1e80, 1e120, 1e160, 1e300}) {
+    Simulator simulator(builder.build(), {.step = kStep}, {ground({.thickness = 0.004}), deforming});
+    simulator.step();
+    simulator.set_gravity({0.0, -gravity, gravity});
+    try {
+      run(simulator, 10 * kStep);
+    } catch (const StepError&) {
+    }
+    EXPECT_TRUE(simulator.positions().allFinite()) << gravity;
   }
 }
 

@@ -21,15 +21,16 @@ struct alignas(kFloatSimdWidth * sizeof(std::int32_t)) RequestedLanes {
 inline void lower(Float8& a, const Float8& b) { a = a < b ? a : b; }
 inline void raise(Float8& a, const Float8& b) { a = a > b ? a : b; }
 
-/// The gap between two bounds along an axis is linear in time, so checking both ends of the interval is enough.
-inline void find_bounds_apart(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf& b, float now, float end, IntLanes& apart) {
+/// The gap between two bounds along an axis is linear in time, so checking both ends of the interval is enough. Unused lanes are
+/// never near: also where coordinates are infinite, as a comparison with what is not a number is false.
+inline void keep_bounds_near(const ElementBvhLeaf& a, int lane, const ElementBvhLeaf& b, float now, float end, IntLanes& near) {
   for (int axis = 0; axis < 3; ++axis) {
     const Float8 above = a.min[axis][lane] - b.max[axis];
     const Float8 rising = a.slowest[axis][lane] - b.fastest[axis];
     const Float8 below = b.min[axis] - a.max[axis][lane];
     const Float8 falling = b.slowest[axis] - a.fastest[axis][lane];
-    apart |= (above + now * rising > 0.0F) & (above + end * rising > 0.0F);
-    apart |= (below + now * falling > 0.0F) & (below + end * falling > 0.0F);
+    near &= (above + now * rising <= 0.0F) | (above + end * rising <= 0.0F);
+    near &= (below + now * falling <= 0.0F) | (below + end * falling <= 0.0F);
   }
 }
 
@@ -92,9 +93,10 @@ inline void find_normals(const Float8 (&x)[3][3], const Float8 (&direction)[3], 
 /// Sets `hits` to the requested lanes of b that the lane of a may touch. Returns whether there are any.
 SPRUNG_KERNEL bool find_touching_lanes(const PositionedLeaf& a, int lane, const PositionedLeaf& b, const RequestedLanes& requested,
                                        float now, float end, LaneBytes& hits) {
-  IntLanes apart = ~requested.lanes;
+  IntLanes near = requested.lanes;
+  keep_bounds_near(a.leaf, lane, b.leaf, now, end, near);
+  IntLanes apart = ~near;
   IntLanes shared = {};
-  find_bounds_apart(a.leaf, lane, b.leaf, now, end, apart);
   find_sharing(a.leaf, lane, b.leaf, shared, apart);
   store(~apart, hits);
   if (!any(hits)) return false;

@@ -32,10 +32,8 @@ struct FloatRange {
 FloatRange float_range(const Vector3& p) {
   FloatRange range;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto nearest = static_cast<float>(p[axis]);
-    const float rounding = std::abs(nearest) * 0x1p-23F + kFloatMin;
-    range.low[axis] = nearest - rounding;
-    range.high[axis] = nearest + rounding;
+    range.low[axis] = float_below(p[axis]);
+    range.high[axis] = float_above(p[axis]);
   }
   return range;
 }

@@ -15,10 +15,13 @@
 
 namespace sprung {
 
-/// A float above or below the value, by one or two roundings; near 0 by the smallest normal float.
+/// A float above or below the value, by one or two roundings; near 0 by the smallest normal float. It is finite, so that the
+/// infinite bounds of a node's unused lanes are apart from it.
 [[nodiscard]] inline float float_above(double value) {
+  constexpr float kMost = std::numeric_limits<float>::max();
   const auto nearest = static_cast<float>(value);
-  return nearest + (std::abs(nearest) * 0x1p-23F + std::numeric_limits<float>::min());
+  const float above = nearest + (std::abs(nearest) * 0x1p-23F + std::numeric_limits<float>::min());
+  return above < kMost ? above : kMost;
 }
 [[nodiscard]] inline float float_below(double value) { return -float_above(-value); }
 
