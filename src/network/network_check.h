@@ -1,4 +1,4 @@
-// The rules for bodies, springs, pins and attachments of a network. Internal to network/.
+// The rules for bodies, springs, pins and attachments of a network: of NetworkBuilder, and of one that a simulator takes.
 #pragma once
 
 #include "base/problem_list.h"

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "geometry/motion/motion_check.h"
+#include "network/network_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,20 @@ bool collide_alike(const SpringNetwork& a, const SpringNetwork& b) {
   return std::ranges::equal(a.bodies, b.bodies, [](const Body& first, const Body& second) {
     return first.contact.self == second.contact.self && first.contact.others == second.contact.others;
   });
+}
+
+// Pins and attachments of a network that no NetworkBuilder made: their particles, and names that pins of the program have.
+void check_ends(const SpringNetwork& network, const std::vector<Pin>& added_pins, ProblemList& problems) {
+  std::vector<Index> begins;
+  for (const Body& body : network.bodies) begins.push_back(body.first_particle);
+  check_pins(network.pins, network.particle_count(), problems);
+  check_attachments(network.attachments, network.particle_count(), begins, problems);
+  for (const Pin& added : added_pins) {
+    const auto is_its = [&](const auto& named) { return named.name == added.name; };
+    if (std::ranges::none_of(network.pins, is_its) && std::ranges::none_of(network.attachments, is_its)) continue;
+    problems.add("pins." + added.name, "", "is the name of a pin that the program added",
+                 "choose another name, or change the network of model(), which has no added pins");
+  }
 }
 
 // Time is counted in frames, and within a frame in steps.
@@ -66,6 +81,7 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   } else if (!collide_alike(network, before.network())) {
     problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
   }
+  check_ends(network, state.steering.added_pins, problems);
   check_step_change(settings, before.settings(), state, problems);
   if (settings.contact.response != before.settings().contact.response) {
     problems.add("contact.response", "", "must stay as it is, as the run goes on", restart);
@@ -82,6 +98,23 @@ void check_entry(const std::string& key, std::size_t number, std::size_t count) 
 void check_number(const std::string& key, double number, ProblemList& problems) {
   if (std::isfinite(number) && number >= 0.0) return;
   problems.add(key, format_number(number, 6), "must be finite and not negative", "give 0 for none");
+}
+
+void check_elements(const Force& force, const std::vector<LinearElement>& elements, Index particle_count) {
+  ProblemList problems;
+  const auto is_good = [&](std::size_t k) {
+    const LinearElement& element = elements[k];
+    if (element.count > element.particles.size()) return false;
+    for (std::size_t i = 0; i < element.count; ++i) {
+      const Index particle = element.particles[i];
+      if (particle < 0 || particle >= particle_count || !std::isfinite(element.weights[i])) return false;
+    }
+    return std::isfinite(element.stiffness) && std::isfinite(element.damping);
+  };
+  problems.require_each(elements.size(), is_good, [](std::size_t /*element*/) { return std::string(); },
+                        {force.name() + ".elements", "must be on particles that exist, with finite weights, stiffness and damping",
+                         "correct append_elements of the force"});
+  problems.throw_if_any();
 }
 
 void check_pose(const std::string& key, const RigidTransform& pose) {
@@ -118,6 +151,13 @@ void check_particle(const SpringNetwork& network, Index particle) {
                     .value = std::to_string(particle),
                     .rule = "must be the number of a particle; there are " + std::to_string(network.particle_count()),
                     .remedy = "count particles from 0"});
+}
+
+bool is_free_for(Index particle, const std::string& name, const Model& model, const SimulationState& state) {
+  const auto is_its = [&](const auto& named) { return named.name == name; };
+  const auto holds_others = [&](const Pin& pin) { return pin.name == name && pin.particles != std::vector<Index>{particle}; };
+  return std::ranges::none_of(model.network().pins, is_its) && std::ranges::none_of(model.network().attachments, is_its) &&
+         std::ranges::none_of(state.steering.added_pins, holds_others);
 }
 
 void check_pin(const SpringNetwork& model, const std::vector<Index>& particles, const std::string& name) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/problem_list.h"
+#include "dynamics/forces/force.h"
 #include "dynamics/state/simulation_state.h"
 #include "simulation/model.h"
 
@@ -12,7 +13,7 @@
 namespace sprung {
 
 /// Another network and other settings for a state of the model `before`: cached contacts and permitted crossings belong to its
-/// elements, and time is counted in frames and steps.
+/// elements, and time is counted in frames and steps. Its pins and attachments must hold particles that exist.
 void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const Model& before,
                   const SimulationState& state);
 
@@ -21,6 +22,9 @@ void check_entry(const std::string& key, std::size_t number, std::size_t count);
 
 /// Adds a problem instead, if a number is negative or not finite.
 void check_number(const std::string& key, double number, ProblemList& problems);
+
+/// The elements of a force that a program adds.
+void check_elements(const Force& force, const std::vector<LinearElement>& elements, Index particle_count);
 
 /// A rotation and a translation.
 void check_pose(const std::string& key, const RigidTransform& pose);
@@ -32,6 +36,9 @@ void check_travel(const std::string& key, const RigidTransform& from, const Rigi
 
 /// The number of a particle.
 void check_particle(const SpringNetwork& network, Index particle);
+
+/// Whether a pin that holds this particle alone may have the name: none has it, or a former pin of this particle that was added.
+[[nodiscard]] bool is_free_for(Index particle, const std::string& name, const Model& model, const SimulationState& state);
 
 /// A pin that a program adds. `model` has the pins that no program added.
 void check_pin(const SpringNetwork& model, const std::vector<Index>& particles, const std::string& name);

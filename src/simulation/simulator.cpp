@@ -103,7 +103,9 @@ Simulator::Simulator(const std::shared_ptr<const Model>& model)
     : implementation_(std::make_unique<Implementation>(model, Control(), model->initial_state())) {}
 Simulator::Simulator(const Simulator& other)
     : implementation_(std::make_unique<Implementation>(other.implementation_->model, other.implementation_->control,
-                                                       other.implementation_->state)) {}
+                                                       other.implementation_->state)) {
+  stop_when({});
+}
 Simulator& Simulator::operator=(const Simulator& other) {
   if (this != &other) *this = Simulator(other);
   return *this;
@@ -172,6 +174,7 @@ void Simulator::set_stretch_limit(const std::optional<StretchLimitSettings>& lim
 void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness, double damping) {
   SpringNetwork network = model()->network();
   check_entry("bodies", body, network.bodies.size());
+  check_entry("kinds of springs", static_cast<std::size_t>(kind), kSpringKindNames.size());
   const Body& changed = network.bodies[body];
   const std::string key = "bodies." + changed.name + ".springs." + kSpringKindNames[static_cast<std::size_t>(kind)];
   ProblemList problems;
@@ -220,7 +223,10 @@ std::size_t Simulator::pin(Index particle) {
   check_particle(network(), particle);
   if (state().activity.is_pinned(particle)) return static_cast<std::size_t>(state().activity.pin_of[particle]);
   const Body& body = network().body_of(particle);
-  return pin({particle}, body.name + ".particles[" + std::to_string(particle - body.first_particle) + "]");
+  const std::string first_choice = body.name + ".particles[" + std::to_string(particle - body.first_particle) + "]";
+  std::string name = first_choice;
+  for (int k = 2; !is_free_for(particle, name, *model(), state()); ++k) name = first_choice + " (" + std::to_string(k) + ")";
+  return pin({particle}, name);
 }
 
 std::size_t Simulator::pin(const std::vector<Index>& particles, const std::string& name) {
@@ -313,6 +319,7 @@ void Simulator::add_force(std::shared_ptr<Force> force) {
   std::vector<LinearElement> elements;
   control.forces.back()->append_elements(elements);
   if (!elements.empty()) {
+    check_elements(*control.forces.back(), elements, network().particle_count());
     check_step(settings(), simulation_bounds(model()->network(), settings(), !obstacles().empty(), control.forces));
   }
   implementation_->change_control(std::move(control));

@@ -68,7 +68,7 @@ class Simulator {
   void restore(const SimulationState& state);
 
   /// Lets step() call `stops` before each substep and throw StoppedError if it returns true; the simulator then is as it was before
-  /// the step. A step with many infeasible particles can take minutes.
+  /// the step. A step with many infeasible particles can take minutes. A copy of the simulator has none.
   void stop_when(std::function<bool()> stops);
 
   // Changes between two steps. The state remains: positions, velocities, time, and bodies that a global solve took over. All
@@ -103,7 +103,8 @@ class Simulator {
   void set_obstacle_material(std::size_t obstacle, const ContactMaterial& material);
 
   /// Fixes a particle where it is. Does nothing if it is pinned already. A pin of the network that begins later leaves it out.
-  /// Returns the number of its pin. Costs about as much as a few steps.
+  /// Returns the number of its pin, whose name is `rope.particles[3]`, or a variant if others have that name. Costs about as much
+  /// as a few steps.
   std::size_t pin(Index particle);
 
   /// Fixes particles where they are, relative to each other; those that are pinned already stay with their pin. The name is that of

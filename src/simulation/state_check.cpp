@@ -9,6 +9,8 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,6 +18,8 @@
 
 namespace sprung {
 namespace {
+
+constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;  // larger numbers are not exact as a double
 
 const char* const kRemedy = "give the state of a simulator of the same scene";
 
@@ -40,8 +44,8 @@ class StateRules {
  private:
   void check_time() {
     const std::int64_t steps = owner_.model.settings().steps_per_frame;
-    require(state_.step >= 0, "step", state_.step, "must not be negative");
-    require(state_.frame >= 0, "frame", state_.frame, "must not be negative");
+    require(state_.step >= 0 && state_.step <= kMostSteps, "step", state_.step, "must be from 0 to 2^53");
+    require(state_.frame >= 0 && state_.frame <= kMostSteps / steps, "frame", state_.frame, "must be from 0 to 2^53 steps");
     require(state_.steps_per_frame == steps, "steps_per_frame", state_.steps_per_frame, "must be that of the settings");
     require(state_.step_in_frame >= 0 && state_.step_in_frame < steps, "step_in_frame", state_.step_in_frame,
             "must be from 0 to one less than the steps of a frame");
@@ -58,7 +62,7 @@ class StateRules {
     require_points("x_previous", state_.x_previous);
     require_size("limit.handovers", state_.limit.handovers.size(), network().bodies.size(), "bodies");
     require_each("limit.handovers", state_.limit.handovers, [&](const StretchHandover& handover) {
-      return owner_.model.settings().stretch_limit.has_value() || handover.missed_steps == 0;
+      return handover.missed_steps >= 0 && (owner_.model.settings().stretch_limit.has_value() || handover.missed_steps == 0);
     });
     const EnergyMemory& energy = state_.energy;
     const double sum = energy.start + energy.highest_gravity + energy.stored + energy.max_kinetic + energy.fastest_drive;
@@ -70,15 +74,26 @@ class StateRules {
     const Steering& steering = state_.steering;
     const std::size_t pins = network().pins.size() + steering.added_pins.size();
     require_size("activity.phases", activity.phases.size(), pins, "pins");
+    const bool known = std::ranges::all_of(activity.phases, [](PinPhase phase) { return phase <= PinPhase::over; });
+    require(known, "activity.phases", "", "must be waiting, holding or over");
     require_size("activity.pin_of", activity.pin_of.size(), particles(), "particles");
     if (!activity.asleep.empty()) require_size("activity.asleep", activity.asleep.size(), particles(), "particles");
     require_indices("activity.pin_of", activity.pin_of,
                     [&](Index pin) { return pin == kNone || (pin >= 0 && static_cast<std::size_t>(pin) < pins); });
-    require_each("steering.added_pins", steering.added_pins, [&](const Pin& pin) {
-      return std::ranges::all_of(pin.particles, [&](Index i) { return is_particle(i); }) && std::isfinite(pin.from);
-    });
+    for (const Pin& pin : steering.added_pins) {
+      require(may_be_added(pin), "steering.added_pins", pin.name,
+              "must have a name of its own, particles that exist, a finite origin and begin, and neither motion, obstacle nor end");
+    }
     check_steered("steering.pins", steering.pins, pins);
     check_steered("steering.obstacles", steering.obstacles, owner_.model.obstacles().obstacles().size());
+  }
+
+  [[nodiscard]] bool may_be_added(const Pin& pin) const {
+    const auto is_its = [&](const auto& named) { return named.name == pin.name; };
+    return !pin.name.empty() && std::ranges::count_if(state_.steering.added_pins, is_its) == 1 &&
+           std::ranges::none_of(network().pins, is_its) && std::ranges::none_of(network().attachments, is_its) &&
+           std::ranges::all_of(pin.particles, [&](Index i) { return is_particle(i); }) && pin.origin.allFinite() &&
+           std::isfinite(pin.from) && !pin.moves() && pin.until == std::numeric_limits<double>::infinity();
   }
 
   void check_steered(const std::string& key, const std::vector<SteeredMotion>& motions, std::size_t count) {
@@ -133,7 +148,9 @@ class StateRules {
     require_each("grips", state_.grips, [&](const PinGrip& grip) {
       return is_particle(grip.particle) && std::isfinite(grip.time) && grip.position.allFinite();
     });
-    require(std::ranges::is_sorted(state_.grips, {}, &PinGrip::particle), "grips", "", "must be sorted by particle");
+    const auto not_higher = [](const PinGrip& a, const PinGrip& b) { return b.particle <= a.particle; };
+    require(std::ranges::adjacent_find(state_.grips, not_higher) == state_.grips.end(), "grips", "",
+            "must be sorted by particle, one for each");
     for (std::size_t p = 0; p < network().pins.size(); ++p) {
       const Pin& pin = network().pins[p];
       if (!is_obstacle(pin.obstacle) || state_.activity.pin_of.size() != particles()) continue;
@@ -149,6 +166,9 @@ class StateRules {
   void check_links() {
     require_each("links", state_.links, [&](const Link& link) { return fits(link); });
     require(std::ranges::is_sorted(state_.links, {}, &Link::attachment), "links", "", "must be sorted by attachment");
+    std::set<std::pair<std::size_t, Index>> ends;
+    for (const Link& link : state_.links) ends.emplace(link.attachment, link.first);
+    require(ends.size() == state_.links.size(), "links", "", "must be one for each first end of an attachment");
   }
 
   [[nodiscard]] bool fits(const Link& link) const {
@@ -162,12 +182,17 @@ class StateRules {
   }
 
   void check_impulses() {
+    require(state_.impulses.on() == state_.last_impulses.on(), "last_impulses", "", "must be there if `impulses` are");
+    const auto is_finite = [](const auto& reaction) { return reaction.second.allFinite(); };
+    require(std::ranges::all_of(state_.reactions.impulses, is_finite), "reactions.impulses", "", "must be finite");
+    require(std::isfinite(state_.reactions.since), "reactions.since", state_.reactions.since, "must be finite");
     for (const auto& [key, impulses] : {std::pair("impulses", &state_.impulses), {"last_impulses", &state_.last_impulses}}) {
       if (!impulses->on()) continue;
       require_points(std::string(key) + ".on_pinned", impulses->on_pinned);
       const auto springs = static_cast<std::size_t>(network().springs.count() - state_.springs.broken_count());
       require_size(std::string(key) + ".of_springs", static_cast<std::size_t>(impulses->of_springs.size()), springs,
                    "springs that are left");
+      require(impulses->of_springs.allFinite(), std::string(key) + ".of_springs", "", "must be finite");
     }
   }
 

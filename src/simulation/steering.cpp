@@ -60,10 +60,24 @@ void keep_pins(const std::vector<Pin>& before, const std::vector<Pin>& after, co
   }
 }
 
+/// A move that the next step makes takes the whole of it, however long it is. Steps change at the end of a frame.
+void fit_moves(const SimulatorSettings& next, const SimulatorSettings& before, SimulationState& state) {
+  if (next.step == before.step) return;
+  const double now = static_cast<double>(whole_steps(state)) * before.step;
+  const double end = static_cast<double>(state.frame * next.steps_per_frame + 1) * next.step;
+  for (auto list : {&Steering::pins, &Steering::obstacles}) {
+    for (SteeredMotion& steered : state.steering.*list) {
+      double& last = steered.poses.back().time;
+      if (last > now + 0.5 * before.step) last = end;
+    }
+  }
+}
+
 }  // namespace
 
 SimulationState continued_in(const Model& next, const Model& before, const SimulationState& state) {
   SimulationState continued = state;
+  fit_moves(next.settings(), before.settings(), continued);
   continued.springs = carried_over(before.network(), state.springs, next.network());
   if (have_same_pins(before.network(), next.network())) return continued;
   continued.activity = all_free(next.network());

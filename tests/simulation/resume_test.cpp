@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -54,6 +55,26 @@ class Resume : public ::testing::Test {
   std::unique_ptr<Simulator> simulator_;
 };
 
+/// A state with a pin that a program added, but for one fault.
+std::function<void(SimulationState&)> pinned(const std::function<void(Pin&)>& spoil) {
+  return [spoil](SimulationState& state) {
+    Pin& pin = state.steering.added_pins.emplace_back();
+    pin.name = "finger";
+    pin.particles = {0};
+    spoil(pin);
+    state.activity.phases.push_back(PinPhase::holding);
+    state.activity.pin_of[0] = 1;
+  };
+}
+
+TEST_F(Resume, TakesAPinThatAProgramAdded) {
+  SimulationState state = simulator_->state();
+  pinned([](Pin&) {})(state);
+  Simulator resumed = resume(state);
+  resumed.step();
+  EXPECT_TRUE(resumed.network().is_pinned(0));
+}
+
 TEST_F(Resume, RefusesAStateThatDoesNotFit) {
   const std::vector<std::pair<std::string, std::function<void(SimulationState&)>>> faults{
       {"state.x = 0 entries: must have 2 entries", [](SimulationState& state) { state = {}; }},
@@ -94,6 +115,25 @@ TEST_F(Resume, RefusesAStateThatDoesNotFit) {
       {"state.links[0]", [](SimulationState& state) { state.links.at(0).attachment = 1; }},
       {"state.links[0]", [](SimulationState& state) { state.links.at(0).second[0] = 2; }},
       {"state.impulses.on_pinned = 1 entries", [](SimulationState& state) { state.impulses.on_pinned.setZero(3, 1); }},
+      {"state.last_impulses: must be there if", [](SimulationState& state) { state.last_impulses = {}; }},
+      {"state.last_impulses: must be there if", [](SimulationState& state) { state.impulses = {}; }},
+      {"state.impulses.of_springs: must be finite", [](SimulationState& state) { state.impulses.of_springs[0] = kNotANumber; }},
+      {"state.reactions.impulses: must be finite",
+       [](SimulationState& state) { state.reactions.impulses["hand"] = Vector3::Constant(kNotANumber); }},
+      {"state.reactions.since = nan", [](SimulationState& state) { state.reactions.since = kNotANumber; }},
+      {"state.step = 9007199254740993", [](SimulationState& state) { state.step = (std::int64_t{1} << 53) + 1; }},
+      {"state.frame = 9223372036854775807", [](SimulationState& state) { state.frame = std::numeric_limits<std::int64_t>::max(); }},
+      {"state.limit.handovers[0]", [](SimulationState& state) { state.limit.handovers[0].missed_steps = -1; }},
+      {"state.activity.phases", [](SimulationState& state) { state.activity.phases[0] = static_cast<PinPhase>(77); }},
+      {"state.grips: must be sorted by particle, one for each",
+       [](SimulationState& state) { state.grips.push_back(state.grips.at(0)); }},
+      {"state.links: must be one for each", [](SimulationState& state) { state.links.push_back(state.links.at(0)); }},
+      {"state.steering.added_pins = finger", pinned([](Pin& pin) { pin.obstacle = 7; })},
+      {"state.steering.added_pins = finger", pinned([](Pin& pin) { pin.motion.spin = Vector3::UnitX(); })},
+      {"state.steering.added_pins = finger", pinned([](Pin& pin) { pin.until = 10.0; })},
+      {"state.steering.added_pins = finger", pinned([](Pin& pin) { pin.origin.x() = kNotANumber; })},
+      {"state.steering.added_pins = hand", pinned([](Pin& pin) { pin.name = "hand"; })},
+      {"state.steering.added_pins: must have a name", pinned([](Pin& pin) { pin.name.clear(); })},
       {"state.last_impulses.of_springs = 9 entries", [](SimulationState& state) { state.last_impulses.of_springs.setZero(9); }},
   };
   for (const auto& [problem, spoil] : faults) {

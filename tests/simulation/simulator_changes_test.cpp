@@ -277,6 +277,14 @@ TEST(SimulatorChanges, TheStepChangesNeitherWithinAFrameNorTheFrame) {
   EXPECT_EQ(refusal(0.02, 2), "");
 }
 
+TEST(SimulatorChanges, ACopyHasNothingThatStopsIt) {
+  Simulator simulator(one_particle(Vector3::Zero()), {.step = kStep});
+  simulator.stop_when([] { return true; });
+  Simulator copy = simulator;
+  copy.step();
+  EXPECT_THROW(simulator.step(), StoppedError);
+}
+
 TEST(SimulatorChanges, ARefusedChangeChangesNothing) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   expect_refused("step", [](Simulator& simulator) {
@@ -292,6 +300,22 @@ TEST(SimulatorChanges, ARefusedChangeChangesNothing) {
   });
   expect_refused("step", [](Simulator& simulator) { simulator.set_springs(0, SpringKind::structural, 1e9, 0.0); });
   expect_refused("springs.shear.damping", [](Simulator& simulator) { simulator.set_springs(0, SpringKind::shear, 1.0, -1.0); });
+  const auto with_attachment = [](Attachment attachment) {
+    return [attachment](Simulator& simulator) {
+      SpringNetwork network = simulator.network();
+      network.attachments.push_back(attachment);
+      simulator.continue_with(std::move(network), simulator.settings());
+    };
+  };
+  expect_refused("attachments[0].first", with_attachment({.particles = {64}, .second = ObstacleEnd{0}}));
+  expect_refused("attachments[0].second", with_attachment({.particles = {0}, .second = ParticleEnds{{-1}}}));
+  expect_refused("attachments[0].second.body", with_attachment({.particles = {0}, .second = SurfaceEnd{1}}));
+  expect_refused("pins[0]", [](Simulator& simulator) {
+    SpringNetwork network = simulator.network();
+    network.pins.emplace_back().particles = {64};
+    simulator.continue_with(std::move(network), simulator.settings());
+  });
+  expect_refused("kinds of springs", [](Simulator& simulator) { simulator.set_springs(0, static_cast<SpringKind>(9), 1.0, 0.0); });
   expect_refused("gravity", [&](Simulator& simulator) { simulator.set_gravity({0.0, kNan, 0.0}); });
   expect_refused("friction", [](Simulator& simulator) { simulator.set_body_material(0, {.friction = -1.0}); });
   expect_refused("friction", [&](Simulator& simulator) { simulator.set_obstacle_material(0, {.friction = kNan}); });
@@ -465,6 +489,33 @@ TEST(SimulatorChanges, AnExternalForceThatNeedsASmallerStepIsRefused) {
   }
   simulator.add_force(std::make_shared<Anchor>(100.0 * mass));
   EXPECT_DOUBLE_EQ(simulator.elastic_energy(), 50.0 * mass);
+}
+
+/// Has an element that a test chooses.
+class OneElement final : public Force {
+ public:
+  explicit OneElement(const LinearElement& element) : element_(element) {}
+  [[nodiscard]] std::string name() const override { return "one element"; }
+  void add(const Kinematics&, Points&) const override {}
+  void append_elements(std::vector<LinearElement>& elements) const override { elements.push_back(element_); }
+
+ private:
+  LinearElement element_;
+};
+
+TEST(SimulatorChanges, ElementsThatAreNotFiniteOrOnNoParticleAreRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const LinearElement& element : {LinearElement::anchor(0, kNan, 0.0), LinearElement::anchor(0, 1.0, kInfinity),
+                                       LinearElement::anchor(1, 1.0, 0.0), LinearElement::anchor(-1, 1.0, 0.0)}) {
+    Simulator simulator(one_particle({0.0, 1.0, 0.0}), {.step = kStep});
+    try {
+      simulator.add_force(std::make_shared<OneElement>(element));
+      ADD_FAILURE() << "was added";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("one element.elements[0]: must be on particles that exist"));
+    }
+  }
 }
 
 /// Keeps particle 0 at a height [m].

@@ -558,6 +558,25 @@ TEST(MovePin, ForcesGoOnInAModelWithOtherPins) {
   EXPECT_NE(before.at("left"), before.at("middle"));
 }
 
+TEST(AddedPin, OfOneParticleEndsNoOther) {
+  Simulator simulator(rope({hand({0})}), settings_of());
+  const std::size_t other = simulator.pin({4}, "rope.particles[3]");
+  const std::size_t number = simulator.pin(3);
+  EXPECT_NE(number, other);
+  EXPECT_TRUE(simulator.network().is_pinned(4));
+  EXPECT_TRUE(simulator.network().is_pinned(3));
+  simulator.release(3);
+  EXPECT_EQ(simulator.pin(3), number) << "its own former pin begins again";
+}
+
+TEST(AddedPin, ItsNameIsNotThatOfAPinOfAChangedModel) {
+  Simulator simulator(rope({}), settings_of());
+  simulator.pin({5}, "hand");
+  EXPECT_THAT(refusal([&] { simulator.continue_with(rope({hand({0})}), simulator.settings()); }),
+              HasSubstr("pins.hand: is the name of a pin that the program added"));
+  simulator.step();
+}
+
 TEST(AddedPin, MayHoldAllParticles) {
   Simulator simulator(rope({}), settings_of(), {low_ground()});
   std::vector<Index> all;
@@ -596,6 +615,26 @@ TEST(Steering, KeepsItsPosesWhenTheStepChangesAtAFrame) {
       EXPECT_EQ(simulator.obstacle_pose(0).translation().y(), height - 0.12);
       EXPECT_NEAR(simulator.positions()(1, 0), height, 16.0 * kEpsilon);
     }
+  }
+}
+
+// A move belongs to the next step, whatever its length becomes before.
+TEST(Steering, AMoveTakesTheWholeOfAStepThatChanges) {
+  for (const int steps_per_frame : {2, 8}) {
+    SimulatorSettings settings = settings_of();
+    settings.steps_per_frame = 4;
+    Simulator simulator(rope({hand({0})}), settings, {ball({0.3, -0.5, 0.0})});
+    run(simulator, 8 * kStep);
+    simulator.move_pin(0, pose_at({0.0, 0.01, 0.0}));
+    simulator.move_obstacle(0, pose_at({0.3, -0.49, 0.0}));
+    settings.step = 4 * kStep / steps_per_frame;
+    settings.steps_per_frame = steps_per_frame;
+    simulator.continue_with(simulator.model()->network(), settings);
+    EXPECT_EQ(simulator.pin_pose(0).translation(), Vector3::Zero());
+    simulator.step();
+    EXPECT_EQ(simulator.pin_pose(0).translation(), Vector3(0.0, 0.01, 0.0));
+    EXPECT_EQ(simulator.obstacle_pose(0).translation(), Vector3(0.3, -0.49, 0.0));
+    EXPECT_NEAR(simulator.positions()(1, 0), 0.01, 16.0 * kEpsilon);
   }
 }
 
