@@ -232,7 +232,8 @@ SpringNetwork NetworkBuilder::build() const {
                               draft.shape.preserve_volume,
                               draft.shape.volume_factor,
                               draft.shape.pressure,
-                              draft.shape.has_material_dampers});
+                              draft.shape.has_material_dampers,
+                              draft.shape.drag});
   }
   network.inverse_masses = network.masses.cwiseInverse();
   network.pins = std::move(pins);

@@ -176,6 +176,16 @@ void check_cells(const std::string& key, const std::vector<Cell>& cells, const P
       EntryRule{key, "must have a positive volume", "order its corners as network/model/cells.h says, and repair the mesh"});
 }
 
+void check_drag(const std::string& key, const BodyDrag& drag, ProblemList& problems) {
+  const auto require = [&](const char* name, double value) {
+    if (is_quantity(value)) return;
+    problems.add(key + ".drag." + name, format_number(value), "must be a finite number not less than 0", "use 0 for no air drag");
+  };
+  require("normal", drag.normal);
+  require("tangential", drag.tangential);
+  require("line_diameter", drag.line_diameter);
+}
+
 template <class Elements>
 bool names_particles(const Elements& elements, std::size_t particles) {
   return elements.size() == 0 || (elements.minCoeff() >= 0 && static_cast<std::size_t>(elements.maxCoeff()) < particles);
@@ -302,6 +312,7 @@ void check_body(const std::string& key, const BodyShape& shape, const ContactMat
   check_angle_bends(key, shape, problems);
   check_face_bends(key, shape, problems);
   check_surface(key, shape, problems);
+  check_drag(key, shape.drag, problems);
   Points positions(3, static_cast<Index>(shape.positions.size()));
   for (Index i = 0; i < positions.cols(); ++i) positions.col(i) = shape.positions[i];
   check_cells(key + ".cells.hexahedra", shape.cells.hexahedra, positions, problems);

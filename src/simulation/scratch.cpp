@@ -34,7 +34,7 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
                       : std::optional<Attachments>(std::in_place, network, obstacles, settings.step,
                                                    std::holds_alternative<ImplicitEulerSettings>(settings.integrator))),
       integrator(make_integrator(settings.integrator, network)),
-      constraints(network, settings, steady_acceleration(network, settings), structure.contacts, *integrator, !obstacles.empty()),
+      constraints(network, settings, structure.contacts, *integrator, !obstacles.empty()),
       pin_paths(network, obstacles.obstacles(), settings.step),
       planner(network, settings, constraints.limit()),
       energy_watch(network, settings, obstacles.obstacles(), forces),
@@ -48,13 +48,14 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
   touches_any = touched.any;
   for (const Index i : touched.particles) touched_groups[structure.groups.group_of[i]] = 1;
   add_forces(network, settings, obstacles, control);
+  constraints.set_steady_acceleration(largest_acceleration(forces));
   add_constraints(network, control);
 }
 
 /// Those that network_forces() does not make.
 void Workspace::add_forces(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles,
                            const Control& control) {
-  if (auto air = face_air(network, settings)) forces.push_back(std::move(air));
+  if (auto air = surface_air(network, settings)) forces.push_back(std::move(air));
   if (auto contact = penalty_contact(network, settings, obstacles)) {
     penalty = contact.get();
     forces.push_back(std::move(contact));
@@ -114,7 +115,7 @@ void Scratch::follow_conditions(const Control& control) {
   settings.gravity = control.gravity.value_or(settings.gravity);
   settings.wind = control.wind.value_or(settings.wind);
   for (const std::unique_ptr<Force>& force : work->forces) force->follow({.gravity = settings.gravity, .wind = settings.wind});
-  work->constraints.set_steady_acceleration(steady_acceleration(network, settings));
+  work->constraints.set_steady_acceleration(largest_acceleration(work->forces));
   conditions_changed = true;
 }
 

@@ -154,7 +154,9 @@ void Simulator::set_gravity(const Vector3& acceleration) {
 }
 
 void Simulator::set_air(double drag, const Wind& wind) {
-  if (drag != settings().air_drag || settings().air_surface.quadratic || !std::isfinite(wind.max_speed())) {
+  // The largest stable step counts on the usual speed of the wind where drag is quadratic.
+  const bool faster = has_own_drag(network()) && wind.usual_speed() > model()->settings().wind.usual_speed();
+  if (drag != settings().air_drag || settings().air_surface.quadratic || faster || !std::isfinite(wind.max_speed())) {
     SimulatorSettings changed = settings();
     changed.air_drag = drag;
     changed.wind = wind;

@@ -84,10 +84,11 @@ class Simulator {
   /// Wakes all particles. Costs about as much as a few steps if any sleep.
   void wake();
 
-  /// [m/s^2]. Costs less than a hundredth of a step; with quadratic drag on faces a new model, as its bound depends on the speed of
-  /// a fall.
+  /// [m/s^2]. Costs less than a hundredth of a step; with a quadratic SimulatorSettings::air_surface a new model, as its bound
+  /// depends on the speed of a fall.
   void set_gravity(const Vector3& acceleration);
-  /// See SimulatorSettings. Costs a new model, but another wind alone less than a hundredth of a step, with the same exception.
+  /// See SimulatorSettings. Costs a new model, but another wind alone less than a hundredth of a step, with the same exception and
+  /// one more: bodies with a drag of their own need a new model for a wind faster than any before.
   void set_air(double drag, const Wind& wind);
 
   /// Springs that exceed the new limit are shortened at once, as far as obstacles and bodies permit; velocities stay as they are.

@@ -26,11 +26,12 @@ std::vector<char> Stepper::particles_to_sleep() const {
   return asleep;
 }
 
-/// A force that may touch any particle may change at any time, and so may wind. Bodies sink into a penalty for long, and are not at
-/// rest while they do.
+/// A force that may touch any particle may change at any time, and so may wind. Still air does not. Bodies sink into a penalty for
+/// long, and are not at rest while they do.
 bool Stepper::may_sleep() const {
   return settings().sleep && work().penalty == nullptr && constraints().contacts().can_collide() && !work().touches_any &&
-         state_.planner.feasible_steps > 0 && (!settings().has_air() || time() >= settings().wind.end());
+         state_.planner.feasible_steps > 0 &&
+         (time() >= settings().wind.end() || !(settings().has_air() || has_own_drag(network())));
 }
 
 /// After each step. A restless group wakes its neighbours. Groups fall asleep at the end of a window.

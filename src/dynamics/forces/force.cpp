@@ -46,6 +46,8 @@ EnergyKind Force::energy_kind() const { return EnergyKind::elastic; }
 
 double Force::capacity() const { return 0.0; }
 
+double Force::largest_acceleration() const { return 0.0; }
+
 bool are_constant(const Forces& forces) {
   return std::ranges::all_of(forces, [](const auto& force) { return force->is_constant(); });
 }
@@ -56,6 +58,12 @@ double energy_of(const Forces& forces, EnergyKind kind, const Points& positions)
     if (force->energy_kind() == kind) energy += force->energy(positions);
   }
   return energy;
+}
+
+double largest_acceleration(const Forces& forces) {
+  double sum = 0.0;
+  for (const auto& force : forces) sum += force->largest_acceleration();
+  return sum;
 }
 
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total) {

@@ -108,6 +108,10 @@ class Force {
   /// The energy [J] that the force may store before an explosion is suspected, such as that of springs at twice their length.
   /// Default: 0.
   [[nodiscard]] virtual double capacity() const;
+
+  /// An upper bound of the acceleration [m/s^2] that the force gives to particles at rest, at any time. Default: 0, for a force
+  /// that particles at rest do not feel, or that springs balance.
+  [[nodiscard]] virtual double largest_acceleration() const;
 };
 
 using Forces = std::vector<std::unique_ptr<Force>>;
@@ -117,6 +121,9 @@ using Forces = std::vector<std::unique_ptr<Force>>;
 
 /// The sum of the potential energies of one kind [J].
 [[nodiscard]] double energy_of(const Forces& forces, EnergyKind kind, const Points& positions);
+
+/// The sum of the largest accelerations [m/s^2].
+[[nodiscard]] double largest_acceleration(const Forces& forces);
 
 /// Writes the sum of all forces [N], 3 x n, to `total`.
 void sum_forces(const Forces& forces, const Kinematics& at, Points& total);

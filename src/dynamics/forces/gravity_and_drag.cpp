@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "dynamics/forces/force_derivatives.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sprung {
@@ -27,7 +28,11 @@ double Gravity::energy(const Points& positions) const {
   return energy;
 }
 
-AirDrag::AirDrag(const SpringNetwork& network, double drag, Wind wind) : network_(network), drag_(drag), wind_(std::move(wind)) {}
+AirDrag::AirDrag(const SpringNetwork& network, double drag, Wind wind) : network_(network), drag_(drag), wind_(std::move(wind)) {
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    rate_ = std::max(rate_, drag * network.drag_areas[i] * network.inverse_masses[i]);
+  }
+}
 
 void AirDrag::add(const Kinematics& at, Points& forces) const {
   const bool gusty = wind_.gusts().has_value();
@@ -50,5 +55,7 @@ void AirDrag::append_elements(std::vector<LinearElement>& elements) const {
     elements.push_back(LinearElement::anchor(i, 0.0, drag_ * network_.drag_areas[i]));
   }
 }
+
+double AirDrag::largest_acceleration() const { return rate_ * wind_.max_speed(); }
 
 }  // namespace sprung

@@ -18,6 +18,7 @@ class Gravity final : public Force {
   void add(const Kinematics& at, Points& forces) const override;
   [[nodiscard]] double energy(const Points& positions) const override;
   [[nodiscard]] EnergyKind energy_kind() const override { return EnergyKind::gravity; }
+  [[nodiscard]] double largest_acceleration() const override { return acceleration_.norm(); }
 
  private:
   const Scalars& masses_;
@@ -34,10 +35,12 @@ class AirDrag final : public Force {
   void add(const Kinematics& at, Points& forces) const override;
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
   void append_elements(std::vector<LinearElement>& elements) const override;
+  [[nodiscard]] double largest_acceleration() const override;
 
  private:
   const SpringNetwork& network_;
   double drag_;
+  double rate_ = 0.0;  ///< the largest of all particles [1/s]
   Wind wind_;
 };
 

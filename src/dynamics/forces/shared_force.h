@@ -31,6 +31,7 @@ class SharedForce final : public Force {
   [[nodiscard]] double energy(const Points& positions) const override { return force_->energy(positions); }
   [[nodiscard]] EnergyKind energy_kind() const override { return force_->energy_kind(); }
   [[nodiscard]] double capacity() const override { return force_->capacity(); }
+  [[nodiscard]] double largest_acceleration() const override { return force_->largest_acceleration(); }
 
  private:
   std::shared_ptr<Force> force_;

@@ -2,6 +2,7 @@
 
 #include "base/format.h"
 #include "base/problem_list.h"
+#include "geometry/mesh/topology.h"
 #include "network/bodies/shape_parts.h"
 
 #include <algorithm>
@@ -9,6 +10,22 @@
 #include <utility>
 
 namespace sprung {
+namespace {
+
+constexpr double kHalfDensity = 0.5 * kAirDensity;
+
+/// Of a square plate across the wind (Hoerner, Fluid-Dynamic Drag, 1965, chapter 3).
+constexpr double kPlate = 1.17;
+
+/// Of each face of a closed surface. The front and the back of a cube feel u_n each: 2 * 0.5 = 1.0. On a sphere of radius R the
+/// components along the wind are 0.5 |cos|^3 dA; their integral over the sphere is 0.5 * 4 pi R^2 / 4 = 0.5 pi R^2.
+constexpr double kClosed = 0.5;
+
+/// Of one side of a plate along the wind: 1.328 / sqrt(Re) (Blasius 1908) at Re = 7e4, that of 1 m at 1 m/s. Laminar and turbulent
+/// plates of Re = 2e4 to 1e7 are between 0.003 and 0.01 (Hoerner 1965, chapter 2).
+constexpr double kSkinFriction = 0.005;
+
+}  // namespace
 
 BodyShape shape_of_particles(std::vector<Vector3> positions, const SpringMaterials& materials) {
   BodyShape shape;
@@ -85,6 +102,15 @@ void set_density(BodyShape& shape, double density) {
   }
   problems.throw_if_any();
   for (std::size_t i = 0; i < shape.masses.size(); ++i) shape.masses[i] = density * shape.measures[i];
+}
+
+BodyDrag drag_in_air(const BodyShape& shape, double diameter) {
+  const Surface& surface = shape.surface;
+  if (surface.triangles.cols() == 0) return {.line_diameter = diameter};
+  if (!shape.cells.empty() || is_closed(surface.triangles)) {
+    return {.normal = kHalfDensity * kClosed, .tangential = kHalfDensity * kSkinFriction};
+  }
+  return {.normal = kHalfDensity * kPlate, .tangential = kHalfDensity * 2.0 * kSkinFriction};
 }
 
 void place(BodyShape& shape, const RigidTransform& pose, const Vector3& velocity) {

@@ -4,6 +4,7 @@
 #include "base/contact_material.h"
 #include "base/types.h"
 #include "geometry/mesh/polygon_mesh.h"
+#include "network/model/body_drag.h"
 #include "network/model/cells.h"
 
 #include <array>
@@ -55,6 +56,7 @@ struct Body {
   /// Per kind of spring, in the order of SpringKind; angle bends and face bends count as `bend`. Whether the dampers are those of a
   /// material: no explicit scheme but explicit Euler needs smaller steps because of them.
   std::array<bool, 3> has_material_dampers{};
+  BodyDrag drag;  ///< of its own; none: that of the settings
 
   /// The number of particles, the first ones, that are vertices of the surface for contact.
   [[nodiscard]] Index contact_vertex_count() const { return carried.empty() ? particle_count : static_cast<Index>(carried.size()); }

@@ -26,6 +26,10 @@ bool has_triangles(const SpringNetwork& network) {
   return std::ranges::any_of(network.bodies, [](const Body& body) { return body.surface.triangles.cols() > 0; });
 }
 
+bool has_own_drag(const SpringNetwork& network) {
+  return std::ranges::any_of(network.bodies, [](const Body& body) { return !body.drag.is_zero(); });
+}
+
 bool bodies_may_collide(const SpringNetwork& network) {
   const auto collides_with_itself = [](const Body& body) { return body.contact.self; };
   const auto collides_with_others = [](const Body& body) { return body.contact.others; };

@@ -46,6 +46,9 @@ struct SpringNetwork {
 /// Whether a body of the network has triangles.
 [[nodiscard]] bool has_triangles(const SpringNetwork& network);
 
+/// Whether a body has a drag of its own.
+[[nodiscard]] bool has_own_drag(const SpringNetwork& network);
+
 /// Whether a body may collide with itself or with another body.
 [[nodiscard]] bool bodies_may_collide(const SpringNetwork& network);
 

@@ -14,19 +14,6 @@
 #include <algorithm>
 
 namespace sprung {
-namespace {
-
-/// With quadratic drag at any speed, as implicit schemes take it.
-SurfaceAirForce air_without_steps(const SpringNetwork& network, const SimulatorSettings& settings) {
-  return {network, settings.air_surface, settings.wind, settings.gravity.norm(), 0.0};
-}
-
-bool acts_on_faces(const SpringNetwork& network, const SimulatorSettings& settings) {
-  return !settings.air_surface.is_zero() && has_triangles(network);
-}
-
-}  // namespace
-
 Forces network_forces(const SpringNetwork& network, const SimulatorSettings& settings, MaterialDampers dampers) {
   Forces forces;
   forces.push_back(std::make_unique<Gravity>(network, settings.gravity));
@@ -43,11 +30,13 @@ Forces network_forces(const SpringNetwork& network, const SimulatorSettings& set
   return forces;
 }
 
-std::unique_ptr<Force> face_air(const SpringNetwork& network, const SimulatorSettings& settings) {
-  if (!acts_on_faces(network, settings)) return nullptr;
+std::unique_ptr<Force> surface_air(const SpringNetwork& network, const SimulatorSettings& settings) {
+  if (settings.air_surface.is_zero() && !has_own_drag(network)) return nullptr;
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
-  return std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(),
-                                           implicit ? 0.0 : settings.step);
+  auto air = std::make_unique<SurfaceAirForce>(network, settings.air_surface, settings.wind, settings.gravity.norm(),
+                                               implicit ? 0.0 : settings.step);
+  if (air->is_empty()) return nullptr;
+  return air;
 }
 
 std::unique_ptr<ContactForce> penalty_contact(const SpringNetwork& network, const SimulatorSettings& settings,
@@ -73,15 +62,6 @@ Constraints network_constraints(const SpringNetwork& network) {
     constraints.push_back(std::make_shared<EnclosedVolume>(network));
   }
   return constraints;
-}
-
-double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings) {
-  double drag = 0.0;
-  for (Index i = 0; settings.air_drag > 0.0 && i < network.particle_count(); ++i) {
-    drag = std::max(drag, settings.air_drag * network.drag_areas[i] * network.inverse_masses[i]);
-  }
-  const double of_faces = acts_on_faces(network, settings) ? air_without_steps(network, settings).largest_acceleration() : 0.0;
-  return settings.gravity.norm() + drag * settings.wind.max_speed() + of_faces;
 }
 
 }  // namespace sprung

@@ -22,8 +22,8 @@ enum class MaterialDampers : std::uint8_t { within, apart };
 [[nodiscard]] Forces network_forces(const SpringNetwork& network, const SimulatorSettings& settings,
                                     MaterialDampers dampers = MaterialDampers::within);
 
-/// The air on faces; null without it.
-[[nodiscard]] std::unique_ptr<Force> face_air(const SpringNetwork& network, const SimulatorSettings& settings);
+/// The air on faces and lines; null without it.
+[[nodiscard]] std::unique_ptr<Force> surface_air(const SpringNetwork& network, const SimulatorSettings& settings);
 
 /// Contact by penalty; null without it. Keeps a reference to the obstacles.
 [[nodiscard]] std::unique_ptr<ContactForce> penalty_contact(const SpringNetwork& network, const SimulatorSettings& settings,
@@ -37,8 +37,5 @@ enum class MaterialDampers : std::uint8_t { within, apart };
 
 /// Carried surfaces and volumes.
 [[nodiscard]] Constraints network_constraints(const SpringNetwork& network);
-
-/// An upper bound of the acceleration [m/s^2] that gravity and wind give to particles at rest.
-[[nodiscard]] double steady_acceleration(const SpringNetwork& network, const SimulatorSettings& settings);
 
 }  // namespace sprung

@@ -42,8 +42,12 @@ double rounding_speed(const Points& positions, double step) {
   return positions.cols() == 0 ? 0.0 : kRounding * positions.cwiseAbs().maxCoeff() / step;
 }
 
+bool feels_air(const SpringNetwork& network, const SimulatorSettings& settings) {
+  return settings.has_air() || has_own_drag(network);
+}
+
 bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles) {
-  const bool wind = settings.has_air() && !settings.wind.is_calm();
+  const bool wind = feels_air(network, settings) && !settings.wind.is_calm();
   return !wind && !do_work(network.attachments) && !std::holds_alternative<ExplicitEulerSettings>(settings.integrator) &&
          !has_moving_pin(network.pins) &&
          std::ranges::none_of(obstacles, [](const Obstacle& obstacle) { return obstacle.changes(); });
@@ -54,7 +58,7 @@ bool is_undriven(const SpringNetwork& network, const SimulatorSettings& settings
 EnergyWatch::EnergyWatch(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles,
                          const Forces& forces)
     : mass_(network.masses.sum()),
-      wind_(settings.has_air() ? settings.wind.max_speed() : 0.0),
+      wind_(feels_air(network, settings) ? settings.wind.max_speed() : 0.0),
       bounce_gain_(bounce_gain(network, obstacles)) {
   const double rounding = rounding_speed(network.positions, settings.step);
   capacity_ = mass_ * settings.gravity.norm() * bounce_height_of(network, settings) + 0.5 * mass_ * rounding * rounding;

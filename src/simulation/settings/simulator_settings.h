@@ -39,7 +39,7 @@ struct SimulatorSettings {
   double frame_rate = 0.0;           ///< [1/s]; messages advise steps that divide a frame; 0: any step
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
   double air_drag = 0.0;             ///< by length of ropes [kg/(m s)], by area of surfaces [kg/(m^2 s)]
-  SurfaceDrag air_surface{};         ///< of the faces of bodies, in addition
+  SurfaceDrag air_surface{};         ///< of the faces of bodies without a drag of their own, in addition
   Wind wind{};
   IntegratorSettings integrator = VerletSettings{};
   std::optional<StretchLimitSettings> stretch_limit{};
@@ -56,7 +56,7 @@ struct SimulatorSettings {
   /// Whether steps record the impulses of pins and springs, for Simulator::reactions and limit_tensions. Changes no other result.
   bool record_forces = false;
 
-  /// Whether the air acts on bodies.
+  /// Whether the air acts on all bodies. It also acts on those that have a drag of their own: see Body::drag.
   [[nodiscard]] bool has_air() const { return air_drag > 0.0 || !air_surface.is_zero(); }
 };
 

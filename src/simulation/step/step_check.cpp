@@ -111,7 +111,7 @@ SpectralBounds bounds_of(const SpringNetwork& network, const SimulatorSettings& 
                          const std::vector<std::shared_ptr<Force>>& external) {
   StepElements elements(network, settings.integrator);
   for (const auto& force : network_forces(network, settings)) elements.add(*force);
-  if (const auto air = face_air(network, settings)) elements.add(*air);
+  if (const auto air = surface_air(network, settings)) elements.add(*air);
   const bool penalty = has_obstacles && settings.contact.response == ContactSettings::Response::penalty;
   if (penalty) elements.add("penalty contact", penalty_elements(network, settings));
   const std::vector<Obstacle> none;  // which bound no step

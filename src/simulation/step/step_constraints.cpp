@@ -48,9 +48,9 @@ constexpr double kCorrected = 1.0e-6;
 
 }  // namespace
 
-StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
-                                 ContactProjection& contacts, Integrator& integrator, bool has_obstacles)
-    : settings_(settings), steady_acceleration_(steady_acceleration), integrator_(integrator), contacts_(contacts) {
+StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, ContactProjection& contacts,
+                                 Integrator& integrator, bool has_obstacles)
+    : settings_(settings), integrator_(integrator), contacts_(contacts) {
   if (!settings.stretch_limit) return;
   limit_.emplace(network, *settings.stretch_limit, limit_use(network, settings, has_obstacles));
 }

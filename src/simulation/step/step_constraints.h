@@ -15,10 +15,9 @@ namespace sprung {
 
 class StepConstraints {
  public:
-  /// Keeps references to the network, the settings, the contacts and the integrator. `steady_acceleration` [m/s^2] is the
-  /// largest acceleration by gravity and wind.
-  StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, double steady_acceleration,
-                  ContactProjection& contacts, Integrator& integrator, bool has_obstacles);
+  /// Keeps references to the network, the settings, the contacts and the integrator.
+  StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, ContactProjection& contacts,
+                  Integrator& integrator, bool has_obstacles);
 
   /// Stores positions and velocities at the beginning of a step. Call it before forces and pins move the state.
   void begin(const SimulationState& state);
@@ -30,7 +29,7 @@ class StepConstraints {
     contacts_.roll_back(permitted);
     if (limit_) limit_->forget_solves();
   }
-  /// See the constructor.
+  /// The largest one by gravity and wind [m/s^2].
   void set_steady_acceleration(double acceleration) { steady_acceleration_ = acceleration; }
 
   /// Makes the substeps that follow as planned.
@@ -82,7 +81,7 @@ class StepConstraints {
   [[nodiscard]] StepMotion motion() const { return {before_, v_before_, slip_before_, advanced_, dt_}; }
 
   const SimulatorSettings& settings_;
-  double steady_acceleration_;
+  double steady_acceleration_ = 0.0;
   Integrator& integrator_;
   std::optional<StretchLimit> limit_;
   ContactProjection& contacts_;

@@ -183,6 +183,30 @@ TEST(ForceDerivatives, OfAirOnFacesAreTheDifferencesOfItsForceByVelocity) {
   }
 }
 
+/// A rope of random shape and velocities.
+SpringNetwork crumpled_rope() {
+  SpringNetwork network = make_test_rope(6, 10.0);
+  const SpringNetwork random = make_random_network(network.particle_count(), 0);
+  network.positions += 0.2 * random.positions;
+  network.velocities = 3.0 * random.velocities;
+  network.bodies[0].drag.line_diameter = 0.1;
+  return network;
+}
+
+// As of faces: a step of 1 ms leaves the force as it is, one of 1 s continues it linearly beyond 0.5 m/s.
+TEST(ForceDerivatives, OfAirOnLinesAreTheDifferencesOfItsForceByVelocity) {
+  const SpringNetwork network = crumpled_rope();
+  for (const double step : {0.0, 1e-3, 1.0}) {
+    const Case air(network, std::in_place_type<SurfaceAirForce>, SurfaceDrag{}, Wind(Vector3(0.0, 0.3, 0.4)), 0.0, step);
+    const ForceDerivatives derivatives = air.derivatives();
+    expect_near(derivatives.by_velocity, air.differences_by_velocity());
+    EXPECT_TRUE(dense(derivatives.by_position).isZero(0.0));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(derivatives.by_velocity), Eigen::EigenvaluesOnly);
+    EXPECT_LE(solver.eigenvalues().maxCoeff(), 1e-13) << "the entries are below 1";
+    EXPECT_LT(solver.eigenvalues().minCoeff(), -0.01);
+  }
+}
+
 // Faces that do not move in the air have no direction along which it flows.
 TEST(ForceDerivatives, OfStillAirOnFacesAreFinite) {
   const SpringNetwork network = make_test_cloth(3, 10.0, 0.0);
@@ -191,6 +215,10 @@ TEST(ForceDerivatives, OfStillAirOnFacesAreFinite) {
   const Case quadratic(network, std::in_place_type<SurfaceAirForce>, SurfaceDrag{.normal = 0.8, .quadratic = true}, Wind(), 0.0,
                        0.0);
   EXPECT_TRUE(dense(quadratic.derivatives().by_velocity).isZero(0.0));
+  SpringNetwork rope = make_test_rope(4, 10.0);
+  rope.bodies[0].drag.line_diameter = 0.1;
+  const Case lines(rope, std::in_place_type<SurfaceAirForce>, SurfaceDrag{}, Wind(), 0.0, 0.0);
+  EXPECT_TRUE(dense(lines.derivatives().by_velocity).isZero(0.0));
 }
 
 /// A particle that penetrates the gap of a tilted floor by a tenth.
