@@ -99,7 +99,9 @@ bool LiveRun::continue_with(const PreparedScene& changed, const std::vector<std:
   };
   if (all_change([](const auto& names) { return names[0] == "gravity"; })) {
     simulator.set_gravity(built.settings.gravity);
-  } else if (all_change([](const auto& names) { return names[0] == "air" && names.size() > 1 && names[1] != "surface"; })) {
+  } else if (all_change([](const auto& names) {
+               return names[0] == "air" && names.size() > 1 && is_one_of(names[1], {"wind", "gusts"});
+             })) {
     simulator.set_air(built.settings.air_drag, built.settings.wind);
   } else if (!all_change([](const auto& names) { return names[0] == "obstacles"; })) {
     simulator.continue_with(built.network, with_steps_of(simulator.settings(), built.settings));

@@ -344,9 +344,9 @@ TEST_F(CommandLine, ValidateCountsItsWarnings) {
   scene["air"] = {{"wind", {1, 0, 0}}};
   const Ending ending = run({"validate", save(scene)});
   EXPECT_EQ(ending.code, 0) << ending.err;
-  EXPECT_THAT(ending.out,
-              AllOf(HasSubstr("warning     body \"cloth\": no springs"), HasSubstr("warning     air.wind has no effect"),
-                    HasSubstr("\nvalid, with 2 warnings\n"), Not(HasSubstr("no errors"))));
+  EXPECT_THAT(ending.out, AllOf(HasSubstr("warning     body \"cloth\": no springs"),
+                                HasSubstr("warning     body \"cloth\": air.wind has no effect"),
+                                HasSubstr("\nvalid, with 2 warnings\n"), Not(HasSubstr("no errors"))));
 }
 
 // A step at which four passes cannot hold a cloth that hangs by two corners.

@@ -103,6 +103,8 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"GravityOfTwoNumbers", {"gravity=[0,-9.81]"}, "gravity", "must have 3 entries; it has 2"},
       {"GravityContainsText", {"gravity=[0,\"down\",0]"}, "gravity[1]", "must be a number"},
       {"HugeNumber", {"gravity=[0,-1e300,0]"}, "gravity[1]", "must be at most 1e+30 in magnitude"},
+      {"AirIsTrue", {"air=true"}, "air", "must be an object, written in { }, or false for vacuum"},
+      {"WindInVacuum", {"air={\"wind\":false}"}, "air.wind", "must be a list"},
       {"NegativeDrag", {"air.drag=-1"}, "air.drag", "must be at least 0"},
       {"NegativeDragAcrossFaces", {"air.surface={\"normal\":-1}"}, "air.surface.normal", "must be at least 0"},
       {"NegativeDragAlongFaces", {"air.surface={\"tangential\":-1}"}, "air.surface.tangential", "must be at least 0"},

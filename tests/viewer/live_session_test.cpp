@@ -35,6 +35,10 @@ constexpr const char* kDivergingScene = R"({"version": 1, "duration": 10, "frame
   "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
                       "springs": {"structural": {"stiffness": 10000}}, "pins": [{"indices": [0]}]}}})";
 
+constexpr const char* kHempScene = R"({"version": 1, "duration": 1, "frame_rate": 50,
+  "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [0, -1, 0], "particles": 11}, "material": "hemp",
+                      "pins": [{"indices": [0]}]}}})";
+
 /// The rope falls from its horizontal start and breaks at its hook.
 std::string breaking_scene() {
   std::string text = kScene;
@@ -178,6 +182,24 @@ TEST_F(LiveViewer, GravityChangesWhileTheRunGoesOn) {
   EXPECT_EQ(scene["changed"]["gravity"], Json({0, 5, 0}));
   EXPECT_FALSE(scene["changed"].contains("integrator")) << "what its author did not write";
   EXPECT_EQ(page.frame().time(), 0.02);
+}
+
+// A hemp rope that hangs still: wind blows it, a drag that is given takes the place of its own, and vacuum lets it be.
+TEST_F(LiveViewer, TheAirOfAMaterialChangesWhileTheRunGoesOn) {
+  LiveRun run({.file = folder_.write("scene.json", kHempScene).string()});
+  const auto drag = [&] { return run.simulator().network().bodies[0].drag.line_diameter; };
+  EXPECT_EQ(drag(), 0.012);
+  run.step();
+  EXPECT_TRUE(run.change({"air.wind=[6,0,0]"}));
+  for (int step = 0; step < 100; ++step) run.step();
+  EXPECT_GT(run.simulator().positions()(0, 10), 0.01);
+  EXPECT_TRUE(run.change({"air.wind=[3,0,0]"}));
+  EXPECT_TRUE(run.change({"air.drag=0.1"}));
+  EXPECT_EQ(drag(), 0.0);
+  EXPECT_TRUE(run.change({"air.drag=null"}));
+  EXPECT_EQ(drag(), 0.012);
+  EXPECT_TRUE(run.change({"air=false"}));
+  EXPECT_EQ(drag(), 0.0);
 }
 
 TEST_F(LiveViewer, AnotherIntegratorBeginsTheRunAnew) {

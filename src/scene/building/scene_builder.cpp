@@ -61,6 +61,7 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
   if (!built) return;
   const auto& limited = scene.limited_bodies;
   built->shape.has_material_dampers = body.preset_damps;
+  if (scene.air_of_materials && !body.preset.empty()) built->shape.drag = drag_in_air(built->shape, body.diameter);
   adjust(scene, body, built->shape, into.adjustments);
   built->shape.stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
   std::vector<Pin> pins = resolve_pins(scene, body, *built, problems);

@@ -232,8 +232,9 @@ void note_thick_bodies(const SpringNetwork& network, GroupedWarnings& bodies) {
 
 void note_wind_along_sheets(const Scene& scene, const SpringNetwork& network, GroupedWarnings& bodies) {
   const SimulatorSettings& settings = scene.settings;
-  if (settings.air_surface.is_zero() || settings.wind.is_calm() || settings.wind.gusts()) return;
+  if (settings.wind.is_calm() || settings.wind.gusts()) return;
   for (const Body& body : network.bodies) {
+    if (settings.air_surface.is_zero() && body.drag.is_zero()) continue;
     const auto normal = normal_of_sheet(network, body);
     if (!normal || has_moving_pin(network, body) || is_across(settings.gravity, *normal)) continue;
     const auto pushes = [&](const WindKeyframe& key) { return is_across(key.velocity, *normal); };

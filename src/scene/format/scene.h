@@ -114,6 +114,7 @@ struct BodyScene {
   std::string preset;                  ///< name of its material; empty: none
   bool preset_limits_stretch = false;  ///< whether a stretch limit stands in for the stiffness of the material
   bool preset_mass = false;            ///< whether the mass is that of the material
+  double diameter = 0.0;               ///< of a rope with a material [m]
   std::array<bool, 3> preset_damps{};  ///< whether all dampers of a kind of spring are the material's, in the order of SpringKind
   MassScene mass;
   SpringMaterials springs;
@@ -166,6 +167,7 @@ struct Scene {
   std::optional<double> step;               ///< [s]; none: "auto"
   double mass_scaling = kMassScaling;       ///< share of a body's mass that may be added for larger steps
   SimulatorSettings settings;               ///< without the step
+  bool air_of_materials = true;             ///< whether bodies with a material have the drag of their shape in air
   std::vector<std::string> limited_bodies;  ///< to which the stretch limit applies; empty: to all
   std::vector<BodyScene> bodies;            ///< in the order of the file
   std::vector<ObstacleScene> obstacles;     ///< in the order of the file

@@ -50,8 +50,10 @@ SurfaceDrag read_surface(Fields& fields) {
 
 }  // namespace
 
-void read_air(Fields& fields, SimulatorSettings& settings) {
-  settings.air_drag = fields.value("drag", number(kNotNegative), 0.0).value_or(0.0);
+void read_air(Fields& fields, Scene& scene) {
+  SimulatorSettings& settings = scene.settings;
+  scene.air_of_materials = !fields.has("drag") && !fields.has("surface");
+  settings.air_drag = fields.optional("drag", number(kNotNegative)).value_or(0.0);
   settings.air_surface = fields.optional("surface", object_of<SurfaceDrag>(read_surface)).value_or(SurfaceDrag{});
   const auto gusts = fields.optional("gusts", object_of<Gusts>(read_gusts));
   settings.wind = Wind(fields.value("wind", wind_rule(), {0, 0, 0}).value_or(WindKeyframes{}), gusts);

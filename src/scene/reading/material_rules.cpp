@@ -183,6 +183,7 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
         tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
     fill_value(value.key, value.value * factor, json, body.preset_damps);
   }
+  if (is_rope) body.diameter = diameter.value_or(preset->find("diameter")->value);
   body.preset_mass = !has_any(json, {"mass", "particle_mass"}) &&
                      is_value(json, "density", preset->find("density")->value * std::pow(scale, preset->find("density")->power));
   if (preset->preserves_volume) preserve_volume(json);

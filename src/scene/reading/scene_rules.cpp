@@ -113,11 +113,15 @@ void check_followed(const Scene& scene, const Json& obstacles, const JsonLocatio
   }
 }
 
-/// Remedies for keys of `air` at the top level. Wind has no effect without a drag, so that the remedy names both.
+bool has_material(const Json& bodies) {
+  return bodies.is_object() && std::ranges::any_of(bodies, [](const Json& body) { return body.contains("material"); });
+}
+
+/// Remedies for keys of `air` at the top level. Wind has no effect without a drag or a material: the remedy then names a drag too.
 void set_remedies_of_air(Fields& fields) {
   fields.set_owner({"drag", "gusts", "surface", "wind"}, "air");
   const Json air = fields.json().value("air", Json());
-  if (air.contains("drag") || air.contains("surface")) return;
+  if (air.contains("drag") || air.contains("surface") || has_material(fields.json().value("bodies", Json()))) return;
   for (const std::string key : {"gusts", "wind"}) {
     fields.set_remedy({key}, "it belongs to air and acts by a drag: write \"air\": { \"" + key + "\": ..., \"drag\": ... }");
   }

@@ -51,7 +51,7 @@ void read_times(Fields& fields, double& from, double& until);
 [[nodiscard]] Rule<ObstacleScene> obstacle_rule(double frame_rate);
 
 /// drag, surface, wind, gusts.
-void read_air(Fields& fields, SimulatorSettings& settings);
+void read_air(Fields& fields, Scene& scene);
 
 /// gravity, air, integrator, stretch_limit, contact, stability, output and others. Without a `stretch_limit`, the bodies that need
 /// one for their materials get it. Requires the scene's bodies.

@@ -105,16 +105,30 @@ Rule<Vector3> gravity_rule() {
   };
 }
 
+/// An object, or false for vacuum.
+Rule<bool> air_rule(Scene& scene) {
+  return [&scene](Json& json, const JsonLocation& location) -> std::optional<bool> {
+    if (json == false) {
+      scene.air_of_materials = false;
+      return true;
+    }
+    if (json.is_object()) {
+      return object_of<bool>([&scene](Fields& keys) {
+        read_air(keys, scene);
+        return true;
+      })(json, location);
+    }
+    location.report(json, "must be an object, written in { }, or false for vacuum");
+    return std::nullopt;
+  };
+}
+
 }  // namespace
 
 void read_settings(Fields& fields, Scene& scene) {
   SimulatorSettings& settings = scene.settings;
   settings.gravity = fields.value("gravity", gravity_rule(), {0, -9.81, 0}).value_or(Vector3::Zero());
-  const auto read_air_keys = [&](Fields& keys) {
-    read_air(keys, settings);
-    return true;
-  };
-  (void)fields.value("air", object_of<bool>(read_air_keys), Json::object());
+  (void)fields.value("air", air_rule(scene), Json::object());
   const auto integrator = fields.value("integrator", object_of<IntegratorSettings>(read_integrator), {{"type", "verlet"}});
   settings.integrator = integrator.value_or(IntegratorSettings{});
   const Json bodies = fields.json().value("bodies", Json());

@@ -94,14 +94,20 @@ class Finder {
     if (!surface.is_zero() && !has_triangles(network_)) {
       warnings_.emplace_back("air.surface has no effect: it acts on faces, and no body has any. Use air.drag.");
     }
+    check_wind();
+  }
+
+  void check_wind() {
     if (settings_.has_air()) return;
     const std::vector<WindKeyframe>& mean = settings_.wind.keyframes();
-    if (std::ranges::any_of(mean, [](const WindKeyframe& key) { return !key.velocity.isZero(0.0); })) {
-      warnings_.emplace_back("air.wind has no effect without air.drag or air.surface. Add one of them.");
+    const bool blows = std::ranges::any_of(mean, [](const WindKeyframe& key) { return !key.velocity.isZero(0.0); });
+    GroupedWarnings of_bodies("body", "bodies");
+    for (const Body& body : network_.bodies) {
+      if (!body.drag.is_zero()) continue;
+      if (blows) of_bodies.add(body.name, std::string("air.wind") + kNoDrag);
+      if (settings_.wind.gusts()) of_bodies.add(body.name, std::string("air.gusts") + kNoDrag);
     }
-    if (settings_.wind.gusts()) {
-      warnings_.emplace_back("air.gusts has no effect without air.drag or air.surface. Add one of them.");
-    }
+    add(of_bodies);
   }
 
   void check_penalty() {
@@ -195,6 +201,8 @@ class Finder {
     return network_.body_of(std::get<ParticleEnds>(attachment.second).particles.front());
   }
 
+  static constexpr const char* kNoDrag =
+      " has no effect here, because there is no drag. Give air.drag or air.surface, or give the body a material and air neither.";
   static constexpr const char* kFrictionOfOneSide =
       "friction has no effect: nothing that it can touch has friction, and a pair has the geometric mean of both. "
       "Give the other side friction too.";

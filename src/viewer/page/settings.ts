@@ -58,7 +58,7 @@ export class Settings {
       }),
       new VectorField('gravity [m/s²]', 'gravity', 'gravity', this.change),
       new VectorField('wind [m/s]', 'wind', 'air.wind', this.change),
-      number(plain('air drag', 'drag', 'air.drag')),
+      number({ ...plain('air drag', 'drag', 'air.drag'), placeholder: 'none' }),
       number({
         label: 'stretch limit',
         testid: 'stretch-limit',

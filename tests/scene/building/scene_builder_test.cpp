@@ -697,5 +697,46 @@ INSTANTIATE_TEST_SUITE_P(SceneBuilder, BrokenMeshTest,
                                          BrokenMesh{"NoArea", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "", false}),
                          [](const auto& test) { return test.param.name; });
 
+/// A cloth of cotton, a rope of hemp, a block of foam and a cloth without a material.
+constexpr const char* kMaterials = R"({"duration": 1, "bodies": {
+  "towel": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3, 3]}, "material": "cotton"},
+  "line": {"shape": {"type": "rope", "from": [0, 2, 0], "to": [1, 2, 0], "particles": 3}, "material": "hemp"},
+  "block": {"shape": {"type": "solid", "size": [1, 1, 1], "resolution": [2, 2, 2]}, "place": {"position": [0, 4, 0]},
+            "material": "foam"},
+  "plain": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [3, 3]}, "mass": 0.2, "place": {"position": [0, 0, 1]},
+            "springs": {"structural": {"stiffness": 400}}}}})";
+
+// In the order of the scene: 0.6 kg/m^3 times 1.17 and 0.5.
+TEST(SceneBuilder, BodiesWithAMaterialMoveInAir) {
+  const SceneFolder folder;
+  for (const std::vector<std::string>& changes :
+       {std::vector<std::string>{}, {"air={}"}, {"air.wind=[1,0,0]"}, {R"(air.gusts={"speed":1,"length":1})"}}) {
+    const Scene scene = folder.read(kMaterials, changes);
+    for (const Scene& read : {scene, folder.read(scene.resolved)}) {
+      const BuiltScene built = build_scene(read);
+      const std::vector<Body>& bodies = built.network.bodies;
+      EXPECT_DOUBLE_EQ(bodies[0].drag.normal, 0.6 * 1.17);
+      EXPECT_EQ(bodies[1].drag.line_diameter, 0.012);
+      EXPECT_DOUBLE_EQ(bodies[2].drag.normal, 0.6 * 0.5);
+      EXPECT_TRUE(bodies[3].drag.is_zero());
+      EXPECT_EQ(built.settings.wind.is_calm(), changes.empty() || changes[0] == "air={}");
+      EXPECT_FALSE(built.settings.has_air());
+    }
+  }
+  const BuiltScene thick = build_scene(folder.read(kMaterials, {"bodies.line.diameter=0.02"}));
+  EXPECT_EQ(thick.network.bodies[1].drag.line_diameter, 0.02);
+}
+
+// A drag or surface that is given stands for the whole of the air, also if it is zero.
+TEST(SceneBuilder, BodiesWithAMaterialMoveInVacuumOrByAGivenDrag) {
+  const SceneFolder folder;
+  for (const char* air : {"air=false", "air.drag=0", "air.drag=0.1", "air.surface={}", R"(air.surface={"normal":1})"}) {
+    const Scene scene = folder.read(kMaterials, {air});
+    for (const Scene& read : {scene, folder.read(scene.resolved)}) {
+      for (const Body& body : build_scene(read).network.bodies) EXPECT_TRUE(body.drag.is_zero()) << air;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sprung

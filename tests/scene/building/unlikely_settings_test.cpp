@@ -104,6 +104,9 @@ TEST_F(UnlikelySettings, FlagNeverFluttersInASteadyWindAlongIt) {
   EXPECT_THAT(flag({R"(air.gusts={"speed": 1, "length": 1})"}), IsEmpty());
   EXPECT_THAT(flag({"bodies.body.place.rotation=[90, 0, 0]"}), IsEmpty()) << "gravity pulls it out of its plane";
   EXPECT_THAT(flag({"bodies.body.velocity=[0, 0, 1]"}), IsEmpty());
+  EXPECT_THAT(flag({"air={\"wind\": [4, 0, 0]}", "bodies.body.material=cotton"}),
+              ElementsAre(HasSubstr("body \"body\": the wind blows exactly along its plane")))
+      << "by the drag of its material";
 }
 
 }  // namespace

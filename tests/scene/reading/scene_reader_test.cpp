@@ -248,6 +248,9 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(scene.mass_scaling, kMassScaling);
   EXPECT_EQ(scene.settings.gravity, Vector3(0, -9.81, 0));
   EXPECT_EQ(scene.settings.air_drag, 0.0);
+  EXPECT_TRUE(scene.settings.air_surface.is_zero());
+  EXPECT_TRUE(scene.settings.wind.is_calm());
+  EXPECT_TRUE(scene.air_of_materials);
   EXPECT_TRUE(std::holds_alternative<VerletSettings>(scene.settings.integrator));
   EXPECT_FALSE(scene.settings.stretch_limit);
   EXPECT_EQ(scene.settings.contact.response, ContactSettings::Response::projection);
