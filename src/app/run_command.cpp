@@ -8,6 +8,7 @@
 #include "base/format.h"
 #include "base/parallel.h"
 #include "output/run_output.h"
+#include "scene/building/strength_scatter.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +21,6 @@ namespace sprung {
 namespace {
 
 RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int threads) {
-  const SimulatorSettings& settings = loaded.simulator.settings();
   BodyMaterials materials;
   for (const BodyScene& body : loaded.scene.bodies) {
     if (!body.preset.empty()) materials[body.name] = body.preset;
@@ -31,7 +31,7 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
           .steps_per_frame = loaded.simulator.settings().steps_per_frame,
           .threads = threads,
           .stretch_solver = loaded.simulator.stretch_solver(),
-          .seed = settings.perturb ? std::optional(settings.seed) : std::nullopt,
+          .seed = uses_seed(loaded.scene) ? std::optional(loaded.scene.settings.seed) : std::nullopt,
           .adjustments = loaded.adjustments,
           .warnings = loaded.warnings,
           .sources = loaded.sources,

@@ -28,7 +28,7 @@ struct RunFacts {
   int steps_per_frame = 1;
   int threads = 1;
   std::string stretch_solver{};         ///< of the stretch limit; empty without one
-  std::optional<std::uint64_t> seed{};  ///< of random pushes; none without them
+  std::optional<std::uint64_t> seed{};  ///< of the scene; none if nothing uses it
   std::vector<StepAdjustment> adjustments{};
   std::vector<std::string> warnings{};
   ObjSources sources{};       ///< of bodies that are written as their files are

@@ -52,11 +52,15 @@ TEST_F(CommandLine, RunWithFormatNoneWritesNoObjFiles) {
   EXPECT_THAT(unknown.err, HasSubstr("--format"));
 }
 
-TEST_F(CommandLine, RunRecordsTheSeedOfPushes) {
+TEST_F(CommandLine, RunRecordsTheSeedThatItUses) {
   EXPECT_EQ(run({"run", save(rope_scene()), "--set", "seed=7", "--out", out()}).code, 0);
   EXPECT_EQ(summary()["seed"], 7);
   EXPECT_EQ(run({"run", save(rope_scene()), "--set", "perturb=false", "--out", out(), "--overwrite"}).code, 0);
   EXPECT_TRUE(summary()["seed"].is_null());
+  const Ending scattered = run({"run", save(rope_scene()), "--set", "perturb=false", "--set", "bodies.rope.material=\"hemp\"", "--set",
+                                "bodies.rope.springs.structural.break=0.5", "--out", out(), "--overwrite"});
+  EXPECT_EQ(scattered.code, 0) << scattered.err;
+  EXPECT_EQ(summary()["seed"], 0) << "strengths scatter by it";
 }
 
 // A row for each of 7 frames and 2 pins; from the first frame on the pins hold the rope together.

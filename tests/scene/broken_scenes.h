@@ -156,6 +156,8 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"PerturbIsNoBoolean", {"perturb=1"}, "perturb", "must be true or false"},
       {"NegativeSeed", {"seed=-1"}, "seed", "must be at least 0"},
       {"SeedIsNotWhole", {"seed=0.5"}, "seed", "must be a whole number"},
+      {"NegativeStrengthScatter", {"strength_scatter=-0.1"}, "strength_scatter", "must be between 0 and 1"},
+      {"StrengthScatterIsAWord", {"strength_scatter=\"some\""}, "strength_scatter", "must be a number"},
       {"NegativeMass", {"bodies.banner.mass=-0.2"}, "bodies.banner.mass", "must be greater than 0"},
       {"NoMass", {"bodies.banner.mass=null"}, "bodies.banner", "must have one of mass, particle_mass, density"},
       {"TwoMasses", {"bodies.banner.density=1"}, "bodies.banner", "it has mass, density: remove all but one"},

@@ -101,6 +101,7 @@ inline constexpr const char* kFullScene = R"({
   "sleep": false,
   "perturb": false,
   "seed": 7,
+  "strength_scatter": 0.25,
   "output": { "forces": true },
   "bodies": {
     "zebra": {

@@ -13,6 +13,7 @@
 #include "scene/building/memory_check.h"
 #include "scene/building/obstacle_builder.h"
 #include "scene/building/pin_resolver.h"
+#include "scene/building/strength_scatter.h"
 #include "scene/building/unlikely_settings.h"
 #include "scene/json/json_text.h"
 #include "scene/step_choice/step_choice.h"
@@ -63,6 +64,7 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
   built->shape.has_material_dampers = body.preset_damps;
   if (scene.air_of_materials && !body.preset.empty()) built->shape.drag = drag_in_air(built->shape, body.diameter);
   adjust(scene, body, built->shape, into.adjustments);
+  scatter_strength(scene, body, built->shape);
   built->shape.stretch_limited = limited.empty() || std::ranges::find(limited, body.name) != limited.end();
   std::vector<Pin> pins = resolve_pins(scene, body, *built, problems);
   const Index first = network.add_body(body.name, built->shape, body.material, body.contact);

@@ -166,6 +166,7 @@ struct Scene {
   double frame_rate = 30.0;                 ///< [1/s]
   std::optional<double> step;               ///< [s]; none: "auto"
   double mass_scaling = kMassScaling;       ///< share of a body's mass that may be added for larger steps
+  double strength_scatter = 0.02;           ///< of the break strain of bodies with a material, see scatter_strength()
   SimulatorSettings settings;               ///< without the step
   bool air_of_materials = true;             ///< whether bodies with a material have the drag of their shape in air
   std::vector<std::string> limited_bodies;  ///< to which the stretch limit applies; empty: to all

@@ -1,10 +1,10 @@
 #include "simulation/step/symmetry_breaker.h"
 
+#include "base/random.h"
 #include "geometry/mesh/union_find.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -26,14 +26,6 @@ constexpr double kCompression = 1.0e-9;
 
 // Largest displacement in a step, relative to the mean rest length.
 constexpr double kPush = 1.0e-9;
-
-/// In [0, 1) (SplitMix64, Steele et al. 2014).
-double random_number(std::uint64_t seed, Index particle) {
-  std::uint64_t mixed = seed + (static_cast<std::uint64_t>(particle) + 1) * 0x9e3779b97f4a7c15U;
-  mixed = (mixed ^ (mixed >> 30U)) * 0xbf58476d1ce4e5b9U;
-  mixed = (mixed ^ (mixed >> 27U)) * 0x94d049bb133111ebU;
-  return std::ldexp(static_cast<double>((mixed ^ (mixed >> 31U)) >> 11U), -std::numeric_limits<double>::digits);
-}
 
 /// The particle for which `distance(particle)` is largest, the first of several.
 template <class Distance>
@@ -147,7 +139,7 @@ SymmetryBreaker::Flat SymmetryBreaker::measure(Piece& piece, const Points& posit
 
 /// At most 1 long.
 Vector3 SymmetryBreaker::direction_across(const Flat& flat, Index particle) const {
-  const double turn = random_number(seed_, particle);
+  const double turn = random_number(seed_, static_cast<std::uint64_t>(particle));
   if (flat.dimension == 2) return (2.0 * turn - 1.0) * flat.direction;
   const Vector3 side = flat.direction.unitOrthogonal();
   const double angle = 2.0 * std::numbers::pi * turn;

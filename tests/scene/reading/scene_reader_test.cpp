@@ -71,6 +71,7 @@ TEST(SceneReader, TimeAndSettingsArrive) {
   EXPECT_FALSE(scene.settings.sleep);
   EXPECT_FALSE(scene.settings.perturb);
   EXPECT_EQ(scene.settings.seed, 7U);
+  EXPECT_EQ(scene.strength_scatter, 0.25);
   EXPECT_TRUE(scene.settings.record_forces);
 }
 
@@ -259,6 +260,7 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_TRUE(scene.settings.sleep);
   EXPECT_TRUE(scene.settings.perturb);
   EXPECT_EQ(scene.settings.seed, 0U);
+  EXPECT_EQ(scene.strength_scatter, 0.02);
   EXPECT_FALSE(scene.settings.record_forces);
   EXPECT_EQ(scene.bodies[0].place.scale, 1.0);
   EXPECT_EQ(scene.bodies[0].velocity, Vector3(0, 0, 0));
