@@ -112,6 +112,9 @@ class StateRules {
     const SpringState& springs = state_.springs;
     require_size("springs.rest_lengths", springs.rest_lengths.size(), start.rest_lengths.size(), "springs, if any yields");
     require_size("springs.broken", springs.broken.size(), start.broken.size(), "springs, if any breaks");
+    if (!springs.unloading.empty()) require_size("springs.unloading", springs.unloading.size(), particles(), "particles");
+    const auto is_finite = [](const Unloading& at) { return std::isfinite(at.by_all + at.by_near + at.by_recoil); };
+    require(std::ranges::all_of(springs.unloading, is_finite), "springs.unloading", "", "must be finite");
     const bool valid =
         std::ranges::all_of(springs.rest_lengths, [](double length) { return std::isfinite(length) && length >= 0.0; });
     require(valid, "springs.rest_lengths", "", "must be finite and not negative");

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "collision/obstacles/obstacle_frame.h"
 #include "network/model/spring_failure.h"
+#include "network/model/unloading.h"
 #include "simulation/step/step_check.h"
 #include "simulation/stepper.h"
 
@@ -21,14 +22,14 @@ constexpr Index kStepsPerEnergy = 64;
 }  // namespace
 
 StepReport Stepper::step() {
-  const std::vector<Index> broken = breaking_springs(network(), state_.x);
+  const std::vector<Index> overlong = springs_due(network(), state_.x, state_.v, time(), state_.springs.unloading);
   const double due = due_before(whole_steps(state_), settings().step);
   std::optional<SimulationState> before;  // the first transition
-  if (!broken.empty() || state_.rest.sleepers != sleeping_groups() || have_pins_changed(network().pins, state_.activity, due)) {
+  if (!overlong.empty() || state_.rest.sleepers != sleeping_groups() || have_pins_changed(network().pins, state_.activity, due)) {
     before = state_;
   }
   try {
-    if (before) begin_step(broken, due);
+    if (before) begin_step(overlong, due);
     std::optional<StepReport> report = attempt(PlanReason::first);
     while (!report) {
       if (!before) before = scratch_.begin;
@@ -49,8 +50,9 @@ StepReport Stepper::step() {
 }
 
 /// Springs break, pins begin and end, and groups fall asleep or wake.
-void Stepper::begin_step(const std::vector<Index>& broken, double due) {
+void Stepper::begin_step(const std::vector<Index>& overlong, double due) {
   const BeforeTransition now = before_transition();
+  const std::vector<Index> broken = breaking_springs(network(), overlong, time(), state_.springs.unloading);
   if (!broken.empty()) {
     const std::vector<char> gone = with_dependents(network().springs, broken);
     for (std::size_t s = 0; s < gone.size(); ++s) {

@@ -66,7 +66,7 @@ class Stepper {
 
  private:
   // The step.
-  void begin_step(const std::vector<Index>& broken, double due);
+  void begin_step(const std::vector<Index>& overlong, double due);
   std::optional<StepReport> attempt(PlanReason reason);
   StepTrial make_trial(const StepPlan& plan);
   StepTrial repeat(const StepPlan& plan);

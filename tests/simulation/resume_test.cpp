@@ -109,6 +109,12 @@ TEST_F(Resume, RefusesAStateThatDoesNotFit) {
       {"state.rest.sleepers = 9 entries", [](SimulationState& state) { state.rest.sleepers.assign(9, 0); }},
       {"state.rest.histories = 1 entries", [](SimulationState& state) { state.rest.histories.resize(1); }},
       {"state.rest.x_at_begin = 1 entries", [](SimulationState& state) { state.rest.x_at_begin.setZero(3, 1); }},
+      {"state.springs.unloading = 1 entries", [](SimulationState& state) { state.springs.unloading.resize(1); }},
+      {"state.springs.unloading",
+       [](SimulationState& state) {
+         state.springs.unloading.resize(static_cast<std::size_t>(state.x.cols()));
+         state.springs.unloading.back().by_recoil = std::numeric_limits<double>::infinity();
+       }},
       {"state.grips[0]", [](SimulationState& state) { state.grips.at(0).particle = 2; }},
       {"state.grips.hand.triangle = 2", [](SimulationState& state) { state.grips.at(0).triangle = 2; }},
       {"state.links[0]", [](SimulationState& state) { state.links.at(0).triangle = 2; }},

@@ -68,7 +68,8 @@ class StateBytes {
     all(m.reason, m.calm_steps, m.feasible_steps, m.retry_from, m.retry_wait, m.retry_infeasible);
   }
   void pass(const Activity& a) { all(a.phases, a.pin_of, a.asleep); }
-  void pass(const SpringState& s) { all(s.rest_lengths, s.broken); }
+  void pass(const Unloading& u) { all(u.by_all, u.by_near, u.by_recoil, u.is_at_tear); }
+  void pass(const SpringState& s) { all(s.rest_lengths, s.broken, s.unloading); }
   void pass(const Pin& p) { all(p.name, p.particles, p.origin, p.from); }
   void pass(const TimedPose& p) { all(p.time, p.pose); }
   void pass(const SteeredMotion& m) { all(m.number, m.poses); }

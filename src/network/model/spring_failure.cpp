@@ -1,9 +1,6 @@
 #include "network/model/spring_failure.h"
 
-#include "geometry/mesh/union_find.h"
-
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
@@ -240,27 +237,6 @@ std::vector<Index> let_yield(Springs& springs, const Points& positions) {
   return changed;
 }
 
-std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions) {
-  const Springs& springs = network.springs;
-  std::vector<std::pair<double, Index>> overstrained;  // by how much, and its number
-  for (Index s = 0; s < static_cast<Index>(springs.laws.size()); ++s) {
-    if (!springs.laws[s].breaks()) continue;
-    const double ratio = length_of(springs, s, positions) / springs.laws[s].break_length;
-    if (ratio > 1.0) overstrained.emplace_back(ratio, s);
-  }
-  if (overstrained.empty()) return {};
-  UnionFind joined(network.particle_count());
-  for (const auto& entry : overstrained) joined.join(springs.first[entry.second], springs.second[entry.second]);
-  std::ranges::stable_sort(overstrained, std::greater<>(), &std::pair<double, Index>::first);
-  std::set<Index> relieved;
-  std::vector<Index> breaking;
-  for (const auto& entry : overstrained) {
-    if (relieved.insert(joined.root(springs.first[entry.second])).second) breaking.push_back(entry.second);
-  }
-  std::ranges::sort(breaking);
-  return breaking;
-}
-
 std::vector<char> with_dependents(const Springs& springs, const std::vector<Index>& broken) {
   std::vector<char> gone(static_cast<std::size_t>(springs.count()), 0);
   for (const Index s : broken) gone[s] = 1;
@@ -305,6 +281,7 @@ SpringState carried_over(const SpringNetwork& from, const SpringState& state, co
   }
   SpringState carried = initial_springs(to.springs);
   if (!broken.empty()) carried.broken = with_dependents(to.springs, broken);
+  carried.unloading = state.unloading;
   const Index common = std::min(from.springs.count(), to.springs.count());
   for (Index s = 0; s < common; ++s) {
     if (from.springs.law(s).yields() && to.springs.law(s).yields() && ends_of(from.springs, s) == ends_of(to.springs, s)) {

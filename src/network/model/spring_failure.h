@@ -12,11 +12,6 @@ namespace sprung {
 /// length, now or at rest, has no strain. Returns the springs that yielded, ascending.
 std::vector<Index> let_yield(Springs& springs, const Points& positions);
 
-/// The springs that break next at these positions [m], ascending: of each connected group of springs that are longer than their
-/// break length, the one with the largest ratio of both, as it may relieve the others. In a stable step a wave does not travel
-/// farther than a spring, so one break per step does not slow a crack down.
-[[nodiscard]] std::vector<Index> breaking_springs(const SpringNetwork& network, const Points& positions);
-
 /// Marks the springs that break, and the shear and bend springs that go with them: those that a broken structural spring spans with
 /// another one, or that cross it between the third corners of two triangles.
 [[nodiscard]] std::vector<char> with_dependents(const Springs& springs, const std::vector<Index>& broken);

@@ -43,10 +43,21 @@ struct Springs {
   void append(Index a, Index b, double rest, double k_s, double k_d, SpringKind spring_kind, const SpringLaw& law = {});
 };
 
+/// Until when springs at a particle wait for the waves of breaks [s], see unloading.h; 0 before the first break of the body.
+struct Unloading {
+  double by_all = 0.0;      ///< the fronts of all breaks of the body
+  double by_near = 0.0;     ///< the fronts of breaks a few springs away
+  double by_recoil = 0.0;   ///< the recoil after all breaks
+  bool is_at_tear = false;  ///< whether a spring broke beside it
+
+  [[nodiscard]] bool operator==(const Unloading&) const = default;
+};
+
 /// What steps change of springs, in the order of the springs at time 0.
 struct SpringState {
   std::vector<double> rest_lengths{};  ///< [m]; empty unless a spring may yield
   std::vector<char> broken{};          ///< whether each is gone; empty unless a spring may break
+  std::vector<Unloading> unloading{};  ///< of each particle; empty before the first break
 
   [[nodiscard]] bool is_broken(Index spring) const { return !broken.empty() && broken[spring] != 0; }
   [[nodiscard]] Index broken_count() const;

@@ -72,15 +72,6 @@ TEST(Yield, SpringsWithoutALengthAndSlackCablesKeepTheirRestLength) {
   EXPECT_EQ(linear.springs.rest_length[0], 1.0);
 }
 
-TEST(Break, OfSpringsThatHangTogetherTheMostStretchedGoesFirst) {
-  // Lengths of 1.75, 2, 2.25, 1.75, 1, 2 and 2.
-  const SpringNetwork network = chain({0.0, 1.75, 3.75, 6.0, 7.75, 8.75, 10.75, 12.75}, {.break_length = 1.5});
-  EXPECT_THAT(breaking_springs(network, network.positions), ElementsAre(2, 5)) << "of two equal ones, that of the lower number";
-  EXPECT_THAT(breaking_springs(chain({0.0, 9.0}, {}), Points::Zero(3, 2)), IsEmpty());
-  EXPECT_THAT(breaking_springs(chain({0.0, 1.5}, {.break_length = 1.5}), (Points(3, 2) << 0, 1.5, 0, 0, 0, 0).finished()),
-              IsEmpty());
-}
-
 std::set<Pair> pairs_of(const SpringNetwork& network, SpringKind kind) {
   std::set<Pair> pairs;
   for (Index s = 0; s < network.springs.count(); ++s) {
