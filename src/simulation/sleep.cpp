@@ -1,4 +1,3 @@
-#include "geometry/mesh/union_find.h"
 #include "simulation/stepper.h"
 
 #include <algorithm>
@@ -29,8 +28,7 @@ std::vector<char> Stepper::particles_to_sleep() const {
 /// A force that may touch any particle may change at any time, and so may wind. Still air does not. Bodies sink into a penalty for
 /// long, and are not at rest while they do.
 bool Stepper::may_sleep() const {
-  return settings().sleep && work().penalty == nullptr && constraints().contacts().can_collide() && !work().touches_any &&
-         state_.planner.feasible_steps > 0 &&
+  return settings().sleep && work().penalty == nullptr && !work().touches_any && state_.planner.feasible_steps > 0 &&
          (time() >= settings().wind.end() || !(settings().has_air() || has_own_drag(network())));
 }
 
@@ -40,6 +38,7 @@ void Stepper::choose_sleepers() {
     wake_all();
     return;
   }
+  work().rest.observe(time(), state_);
   const bool window_ends = RestDetector::window_ends(time(), state_);
   if (network().activity.asleep.empty() && !window_ends) return;
   const Surroundings::Found found = work().surroundings.find(state_);
@@ -74,45 +73,30 @@ void Stepper::wake_driven() {
   wake_with_bodies(asleep);
 }
 
-/// A group at rest falls asleep if its neighbours are at rest too, and if it touches something, or a group does that is joined to
-/// it through others that sleep. Without contact nothing sleeps: a pendulum is slow at the end of each swing.
+/// A group at rest falls asleep if its neighbours are at rest too, and its body does not stand on its edge.
 void Stepper::add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed) {
   std::vector<char> awake;
   for (Index p = 0; p < groups().count(); ++p)
     awake.push_back(!sleeps(p) && is_free(p) && !state_.rest.histories[p].is_at_rest ? 1 : 0);
   const std::vector<char> beside_awake = with_neighbours(awake, pairs);
-  std::vector<char> candidates = state_.rest.sleepers;
-  std::vector<char> bodies(network().bodies.size(), 0);  // of new candidates
+  const std::vector<char> stands = standing_bodies();
   for (Index p = 0; p < groups().count(); ++p) {
     if (sleeps(p) || !is_free(p) || disturbed[p] != 0 || beside_awake[p] != 0) continue;
-    candidates[p] = 1;
-    bodies[groups().groups[p].body] = 1;
-  }
-  UnionFind joined(groups().count());
-  for (const auto& [a, b] : groups().adjacent) {
-    if (candidates[a] != 0 && candidates[b] != 0) joined.join(a, b);
-  }
-  std::vector<char> supported(candidates.size(), 0);  // by root
-  for (Index p = 0; p < groups().count(); ++p) supported[joined.root(p)] |= state_.rest.sleepers[p];
-  for (const Index p : steady_groups(bodies)) supported[joined.root(p)] = 1;
-  for (Index p = 0; p < groups().count(); ++p) {
-    if (candidates[p] != 0) state_.rest.sleepers[p] = supported[joined.root(p)];
+    if (stands[groups().groups[p].body] == 0) state_.rest.sleepers[p] = 1;
   }
 }
 
-/// The groups of these bodies that touch something, without bodies that stand on their edge.
-std::vector<Index> Stepper::steady_groups(const std::vector<char>& bodies) const {
+std::vector<char> Stepper::standing_bodies() const {
   std::vector<std::vector<ContactNormal>> contacts(network().bodies.size());
   for (const ContactNormal& contact : contact_normals()) {
-    const std::size_t body = groups().groups[groups().group_of[contact.particle]].body;
-    if (bodies[body] != 0) contacts[body].push_back(contact);
+    contacts[groups().groups[groups().group_of[contact.particle]].body].push_back(contact);
   }
-  std::vector<Index> steady;
+  std::vector<char> stands;
   for (const std::vector<ContactNormal>& of_body : contacts) {
-    if (structure().symmetry && structure().symmetry->has_standing(of_body, state_.x)) continue;
-    for (const ContactNormal& contact : of_body) steady.push_back(groups().group_of[contact.particle]);
+    const bool touches = structure().symmetry && !of_body.empty();
+    stands.push_back(touches && structure().symmetry->has_standing(of_body, state_.x) ? 1 : 0);
   }
-  return steady;
+  return stands;
 }
 
 /// If a group of `asleep` wakes, its whole body wakes: it may have lost its support. A group that an attachment joins to a free

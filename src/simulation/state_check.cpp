@@ -143,7 +143,8 @@ class StateRules {
     require_size("rest.histories", rest.histories.size(), histories, "sleep groups and bodies, after the begin of a window");
     if (!rest.window_begin) return;
     require(std::isfinite(*rest.window_begin), "rest.window_begin", *rest.window_begin, "must be finite");
-    require_points("rest.x_at_begin", rest.x_at_begin);
+    require_points("rest.x_at_frame", rest.x_at_frame);
+    for (const Points& positions : rest.x_at_begins) require_points("rest.x_at_begins", positions);
     require_points("rest.x_beside_sleep", rest.x_beside_sleep);
   }
 

@@ -8,6 +8,7 @@
 #include "network/model/attachment.h"
 #include "network/model/springs.h"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -32,18 +33,21 @@ struct LimitMemory {
   std::vector<StretchHandover> handovers{};  ///< one entry per body
 };
 
-/// The motion of a sleep group or a body in the last windows, see RestDetector.
+/// The motion of a sleep group or a body, see RestDetector. Root mean squares over its particles.
 struct MotionHistory {
-  double displacement = 0.0;  ///< root mean square of the particles' displacements in the window before [m]
-  bool was_quiet = false;     ///< whether the window before was quiet
-  bool is_at_rest = false;    ///< whether it was at rest in the two windows before
+  double in_frame = 0.0;       ///< the largest displacement in a frame of the present window [m]
+  double displacement = 0.0;   ///< the largest one from the begin of the present window [m]
+  bool was_invisible = false;  ///< whether its motion was in the last window
+  bool is_at_rest = false;     ///< whether it was at rest at the end of the last window
 };
 
 /// Which groups are at rest, and which sleep in the next step.
 struct RestMemory {
   std::optional<double> window_begin{};    ///< of the present window of RestDetector [s]; none at first
-  Points x_at_begin{};                     ///< positions then [m], 3 x n
-  Points x_beside_sleep{};                 ///< positions then or, while a neighbour sleeps, when it fell asleep [m], 3 x n
+  int frames = 0;                          ///< of the present window so far
+  Points x_at_frame{};                     ///< positions at the begin of the present frame [m], 3 x n
+  std::array<Points, 3> x_at_begins{};     ///< those at the begins of the present window and the two before [m]
+  Points x_beside_sleep{};                 ///< those at the begin of the window or, while a neighbour sleeps, of its sleep [m]
   std::vector<MotionHistory> histories{};  ///< of each sleep group, then of each body
   std::vector<char> sleepers{};            ///< whether each sleep group sleeps in the next step
 };

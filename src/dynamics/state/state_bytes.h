@@ -77,8 +77,11 @@ class StateBytes {
   void pass(const ContactNormal& n) { all(n.particle, n.normal); }
   void pass(const PermittedCrossing& c) { all(c.obstacle, c.particle); }
   void pass(const ContactMemory& c) { all(c.slip.displacement, c.slip.obstacle, c.pushed, c.normals, c.permitted_crossings); }
-  void pass(const MotionHistory& h) { all(h.displacement, h.was_quiet, h.is_at_rest); }
-  void pass(const RestMemory& r) { all(r.window_begin, r.x_at_begin, r.x_beside_sleep, r.histories, r.sleepers); }
+  void pass(const MotionHistory& h) { all(h.in_frame, h.displacement, h.was_invisible, h.is_at_rest); }
+  void pass(const RestMemory& r) {
+    all(r.window_begin, r.frames, r.x_at_frame, r.x_at_begins[0], r.x_at_begins[1], r.x_at_begins[2], r.x_beside_sleep);
+    all(r.histories, r.sleepers);
+  }
   void pass(const EnergyMemory& e) { all(e.start, e.highest_gravity, e.stored, e.max_kinetic, e.fastest_drive, e.is_stale); }
   void pass(const StretchHandover& h) { all(h.missed_steps, h.patience, h.solved_since); }
   void pass(const PinGrip& g) { all(g.particle, g.from, g.time, g.position, g.triangle); }

@@ -3,6 +3,7 @@
 #include "dynamics/tethers/limited_springs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -14,26 +15,33 @@ namespace {
 // Time between two comparisons [s].
 constexpr double kWindow = 0.25;
 
-// Gravity gives the fastest slow speed in this time [s].
-constexpr double kFall = 1.0e-3;
+constexpr int kFrames = 8;  // in a window
 
-// Largest displacement at rest, as a fraction of the shortest spring. A slow speed gives another bound.
+// A displacement that nobody sees [m].
+constexpr double kUnseen = 1.0e-4;
+
+// Springs of this length [m] and longer ones scale no bound.
+constexpr double kLongSpring = 0.01;
+
+// Displacement of a particle at rest [m], as long as a slow slide of a few seconds; and the same as a part of the shortest spring.
+constexpr double kMost = 2.5e-3;
 constexpr double kOfSpring = 0.1;
 
 // Change of the springs' force on a group that does not wake it, as a fraction of its weight.
 constexpr double kOfWeight = 0.1;
 
-// Root mean square of the displacements in a quiet window, as a fraction of the largest: what glides moves as a whole.
-constexpr double kQuiet = 0.125;
+// A motion that slides on by less before it stops has stopped for the eye [m].
+constexpr double kSlide = 1.0e-3;
 
-// Growth of these displacements from a window to the next at rest. What begins to slide moves three times as far in the second
-// window.
-constexpr double kGrowth = 2.0;
+// A swing that keeps more of its amplitude in a window halves it in more than 8 s.
+constexpr double kSteady = 0.98;
 
-// Displacements that are noise, as a fraction of those in a quiet window.
-constexpr double kNoise = 0.08;
+// A slower creep takes an hour for what the eye sees [m/s].
+constexpr double kCreep = 3.0e-8;
 
 }  // namespace
+
+double RestDetector::Watched::scale() const { return std::min(1.0, shortest / kLongSpring); }
 
 RestDetector::RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit,
                            const Vector3& gravity)
@@ -47,16 +55,16 @@ RestDetector::RestDetector(const SpringNetwork& network, const SleepGroups& grou
 void RestDetector::watch(const SpringNetwork& network, const SleepGroups& groups) {
   for (std::size_t b = 0; b < network.bodies.size(); ++b) {
     const Body& body = network.bodies[b];
-    double longest = std::numeric_limits<double>::infinity();
+    double shortest = std::numeric_limits<double>::infinity();
     for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
       const double length = network.springs.rest_length[s];
-      if (length > 0.0) longest = std::min(longest, kOfSpring * length);
+      if (length > 0.0) shortest = std::min(shortest, length);
     }
-    bodies_.push_back({.body = b, .free = {}, .longest = longest});
+    bodies_.push_back({.body = b, .free = {}, .shortest = shortest});
   }
   for (const SleepGroup& group : groups.groups) {
     Watched& body = bodies_[group.body];
-    Watched& watched = groups_.emplace_back(Watched{.body = group.body, .free = {}, .longest = body.longest});
+    Watched& watched = groups_.emplace_back(Watched{.body = group.body, .free = {}, .shortest = body.shortest});
     std::ranges::copy_if(group.particles, std::back_inserter(watched.free), [&](Index i) { return !network.is_fixed(i); });
     body.free.insert(body.free.end(), watched.free.begin(), watched.free.end());
   }
@@ -122,65 +130,127 @@ bool RestDetector::window_ends(double time, const SimulationState& state) {
   return !state.rest.window_begin || time - *state.rest.window_begin >= kWindow;
 }
 
+void RestDetector::observe(double time, SimulationState& state) const {
+  RestMemory& rest = state.rest;
+  if (!rest.window_begin || time - *rest.window_begin < kWindow / kFrames * (rest.frames + 1)) return;
+  std::vector<double> in_frame(bodies_.size(), 0.0);  // squares
+  std::vector<double> in_window(bodies_.size(), 0.0);
+  const auto note = [](double in_frame_sum, double in_window_sum, std::size_t count, MotionHistory& history) {
+    if (count == 0) return;
+    history.in_frame = std::max(history.in_frame, std::sqrt(in_frame_sum / static_cast<double>(count)));
+    history.displacement = std::max(history.displacement, std::sqrt(in_window_sum / static_cast<double>(count)));
+  };
+  for (std::size_t p = 0; p < groups_.size(); ++p) {
+    double frame_sum = 0.0;
+    double window_sum = 0.0;
+    for (const Index i : groups_[p].free) {
+      frame_sum += (state.x.col(i) - rest.x_at_frame.col(i)).squaredNorm();
+      window_sum += (state.x.col(i) - rest.x_at_begins[0].col(i)).squaredNorm();
+    }
+    in_frame[groups_[p].body] += frame_sum;
+    in_window[groups_[p].body] += window_sum;
+    note(frame_sum, window_sum, groups_[p].free.size(), rest.histories[p]);
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    note(in_frame[b], in_window[b], bodies_[b].free.size(), rest.histories[groups_.size() + b]);
+  }
+  ++rest.frames;
+  rest.x_at_frame = state.x;
+}
+
 void RestDetector::end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside,
                               SimulationState& state) const {
-  if (!state.rest.window_begin) {
-    state.rest.histories.assign(groups_.size() + bodies_.size(), {});
-    state.rest.x_beside_sleep = state.x;
+  RestMemory& rest = state.rest;
+  if (!rest.window_begin) {
+    rest.histories.assign(groups_.size() + bodies_.size(), {});
+    rest.x_at_begins.fill(state.x);
+    rest.x_beside_sleep = state.x;
   } else {
     judge_all(restless, state);
+    rest.x_at_begins[2].swap(rest.x_at_begins[1]);
+    rest.x_at_begins[1].swap(rest.x_at_begins[0]);
+    rest.x_at_begins[0] = state.x;
   }
-  state.rest.window_begin = time;
-  state.rest.x_at_begin = state.x;
+  rest.window_begin = time;
+  rest.frames = 0;
+  rest.x_at_frame = state.x;
   for (std::size_t p = 0; p < groups_.size(); ++p) {
     if (beside[p] != 0) continue;
-    for (const Index i : groups_[p].free) state.rest.x_beside_sleep.col(i) = state.x.col(i);
+    for (const Index i : groups_[p].free) rest.x_beside_sleep.col(i) = state.x.col(i);
   }
 }
 
 void RestDetector::forget(SimulationState& state) {
   state.rest.window_begin.reset();
-  state.rest.x_at_begin.resize(3, 0);
+  state.rest.frames = 0;
+  state.rest.x_at_frame.resize(3, 0);
+  state.rest.x_at_begins.fill(Points(3, 0));
   state.rest.x_beside_sleep.resize(3, 0);
   state.rest.histories.clear();
 }
 
-double RestDetector::slow() const { return kFall * gravity_.norm(); }
-
-double RestDetector::longest(const Watched& group) const { return std::min(kWindow * slow(), group.longest); }
-
 bool RestDetector::has_moved(const Watched& group, const SimulationState& state) const {
-  const double longest = this->longest(group);
+  const double most = std::min(kMost, kOfSpring * group.shortest);
   return std::ranges::any_of(
-      group.free, [&](Index i) { return (state.x.col(i) - state.rest.x_beside_sleep.col(i)).squaredNorm() > longest * longest; });
+      group.free, [&](Index i) { return (state.x.col(i) - state.rest.x_beside_sleep.col(i)).squaredNorm() > most * most; });
+}
+
+/// `swing` [m]: a smaller displacement in a window does not count as a swing.
+bool RestDetector::goes_on(const Watched& group, const SimulationState& state, double swing) {
+  const std::array<Points, 3>& begins = state.rest.x_at_begins;
+  double d00 = 0.0;  // sums of products of displacements: in this window, and in the two before
+  double d11 = 0.0;
+  double d22 = 0.0;
+  double d01 = 0.0;
+  double d02 = 0.0;
+  double d12 = 0.0;
+  for (const Index i : group.free) {
+    const Vector3 now = state.x.col(i) - begins[0].col(i);
+    const Vector3 last = begins[0].col(i) - begins[1].col(i);
+    const Vector3 second_last = begins[1].col(i) - begins[2].col(i);
+    d00 += now.squaredNorm();
+    d11 += last.squaredNorm();
+    d22 += second_last.squaredNorm();
+    d01 += now.dot(last);
+    d02 += now.dot(second_last);
+    d12 += last.dot(second_last);
+  }
+  const double displacement = std::sqrt(d00 / static_cast<double>(group.free.size()));
+  if (displacement <= kCreep * kWindow) return false;
+  if (d11 == 0.0) return true;  // it begins to move
+  // now = a last + b second_last; without a second mode now = a last.
+  double a = d01 / d11;
+  double b = 0.0;
+  if (const double determinant = d11 * d22 - d12 * d12; determinant > 1.0e-6 * d11 * d22) {
+    a = (d01 * d22 - d02 * d12) / determinant;
+    b = (d02 * d11 - d01 * d12) / determinant;
+  }
+  const double discriminant = 0.25 * a * a + b;
+  if (discriminant < 0.0) return std::sqrt(-b) > kSteady && displacement > swing;
+  const double kept = 0.5 * a + std::sqrt(discriminant);
+  const double reversed = 0.5 * a - std::sqrt(discriminant);
+  return kept >= 1.0 || displacement > kSlide * (1.0 - kept) || (reversed < -kSteady && displacement > swing);
 }
 
 void RestDetector::judge_all(const std::vector<char>& restless, SimulationState& state) const {
   std::vector<char> of_bodies(bodies_.size(), 0);
-  const auto rest_of_body = [&](std::size_t body) -> MotionHistory& { return state.rest.histories[groups_.size() + body]; };
+  const auto of_body = [&](std::size_t body) -> MotionHistory& { return state.rest.histories[groups_.size() + body]; };
   for (std::size_t p = 0; p < groups_.size(); ++p) {
     const std::size_t body = groups_[p].body;
     of_bodies[body] = of_bodies[body] != 0 || restless[p] != 0 ? 1 : 0;
     judge(groups_[p], restless[p] != 0, state, state.rest.histories[p]);
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) judge(bodies_[b], of_bodies[b] != 0, state, rest_of_body(b));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) judge(bodies_[b], of_bodies[b] != 0, state, of_body(b));
   for (std::size_t p = 0; p < groups_.size(); ++p) {
-    state.rest.histories[p].is_at_rest = state.rest.histories[p].is_at_rest || rest_of_body(groups_[p].body).is_at_rest;
+    state.rest.histories[p].is_at_rest = state.rest.histories[p].is_at_rest || of_body(groups_[p].body).is_at_rest;
   }
 }
 
-void RestDetector::judge(const Watched& group, bool is_restless, const SimulationState& state, MotionHistory& rest) const {
-  const auto root_mean_square = [&](const auto& vector) {
-    double sum = 0.0;
-    for (const Index i : group.free) sum += vector(i).squaredNorm();
-    return group.free.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(group.free.size()));
-  };
-  const double speed = root_mean_square([&](Index i) { return state.v.col(i); });
-  const double displacement = root_mean_square([&](Index i) { return state.x.col(i) - state.rest.x_at_begin.col(i); });
-  const double largest = kQuiet * longest(group);
-  const bool is_quiet = !is_restless && speed <= slow() && displacement <= largest;
-  const bool grows = displacement > kGrowth * std::max(rest.displacement, kNoise * largest);
-  rest = {.displacement = displacement, .was_quiet = is_quiet, .is_at_rest = is_quiet && rest.was_quiet && !grows};
+void RestDetector::judge(const Watched& group, bool is_restless, const SimulationState& state, MotionHistory& history) {
+  const double unseen = kUnseen * group.scale();
+  const bool invisible = !is_restless && (history.in_frame <= unseen || history.displacement <= unseen);
+  history = {.was_invisible = invisible,
+             .is_at_rest = invisible && history.was_invisible && (group.free.empty() || !goes_on(group, state, unseen))};
 }
 
 }  // namespace sprung
