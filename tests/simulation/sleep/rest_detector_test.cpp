@@ -7,34 +7,59 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 namespace sprung::testing {
 namespace {
 
 constexpr double kWindow = 0.25;  // [s]
-constexpr double kMost = 2.5e-3;  // displacement at rest on earth [m], and times four the slowest speed that is not slow
+constexpr int kFrames = 8;        // of a window
+constexpr double kMost = 2.0e-3;  // displacement of a particle at rest [m]: a tenth of its springs
 
-/// A cloth of 1 m whose springs of 5 cm are too long to matter, and its groups of 64 particles.
+/// A cloth of 0.38 m with springs of 2 cm, and its groups of 64 particles.
 class Rest : public ::testing::Test {
  protected:
-  /// Moves the particles of a group by `distance` [m] in a window, at whose end they have `speed` [m/s].
-  void move(Index group, double distance, double speed = 0.0) {
-    for (const Index i : groups_.groups[group].particles) {
-      state_.x(0, i) += distance;
-      state_.v(0, i) = speed;
-    }
+  /// Moves the particles of a group by `distance` [m].
+  void move(Index group, double distance) {
+    for (const Index i : groups_.groups[group].particles) state_.x(0, i) += distance;
   }
 
+  /// Ends a window whose frames nobody watched.
   void end_window(const std::vector<char>& beside = {}) {
     time_ += kWindow;
     ASSERT_TRUE(RestDetector::window_ends(time_, state_));
     detector_.end_window(time_, restless_, beside.empty() ? none_ : beside, state_);
   }
 
+  /// Lets all particles follow a path x(t) [m], t from 0 s on, for a window. Without `window` windows before, the first one begins.
+  void follow(const std::function<double(double)>& path, int window) {
+    if (window == 0) end_window();
+    for (int frame = 1; frame <= kFrames; ++frame) {
+      const double t = (window + static_cast<double>(frame) / kFrames) * kWindow;
+      for (Index i = 0; i < network_.particle_count(); ++i) state_.x(0, i) = network_.positions(0, i) + path(t);
+      detector_.observe(time_ + frame * kWindow / kFrames, state_);
+    }
+    end_window();
+  }
+
+  /// The time [s] at which the path is at rest for the first time; infinite: not in 20 s.
+  double rests_at(const std::function<double(double)>& path) {
+    state_ = initial_state(network_);
+    for (Index i = 0; i < network_.particle_count(); ++i) state_.x(0, i) += path(0.0);
+    for (int window = 0; window < 80; ++window) {
+      follow(path, window);
+      if (rests(0)) return (window + 1) * kWindow;
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
   [[nodiscard]] bool rests(Index group) const { return state_.rest.histories[group].is_at_rest; }
 
-  SpringNetwork network_ = cloth(20, 0.0);
+  SpringNetwork network_ = cloth_of_short_springs();
   SleepGroups groups_{network_};
   const Vector3 gravity_ = kGravity * Vector3::UnitY();
   RestDetector detector_{network_, groups_, nullptr, gravity_};
@@ -42,9 +67,18 @@ class Rest : public ::testing::Test {
   const std::vector<char> none_ = std::vector<char>(groups_.groups.size(), 0);
   std::vector<char> restless_ = none_;
   double time_ = -kWindow;
+
+ private:
+  static SpringNetwork cloth_of_short_springs() {
+    BodyShape shape = make_cloth({.size = {0.38, 0.38}, .resolution = {20, 20}}, {.structural = SpringMaterial{.value = 200.0}});
+    set_total_mass(shape, 0.2);
+    NetworkBuilder builder;
+    builder.add_body("cloth", shape, {.thickness = 0.005});
+    return builder.build();
+  }
 };
 
-TEST_F(Rest, BeginsAfterTwoQuietWindows) {
+TEST_F(Rest, BeginsAfterTwoWindowsWithoutMotion) {
   end_window();
   EXPECT_FALSE(RestDetector::window_ends(time_ + 0.9 * kWindow, state_));
   end_window();
@@ -53,13 +87,41 @@ TEST_F(Rest, BeginsAfterTwoQuietWindows) {
   EXPECT_TRUE(rests(0));
 }
 
-TEST_F(Rest, IsSlowerThanOneCentimetreASecond) {
-  for (const double speed : {0.0097, 0.0099}) {  // g times a millisecond is 9.81 mm/s
-    for (int window = 0; window < 3; ++window) {
-      for (Index p = 0; p < groups_.count(); ++p) move(p, 0.0, speed);
-      end_window();
-    }
-    EXPECT_EQ(rests(0), speed < 0.0098);
+// A motion that slows down by a factor of ten every second, and would slide on by 1.4 mm from 3 mm/s on.
+TEST_F(Rest, BeginsWhereAFrameMovesLessThanATenthOfAMillimetre) {
+  const double decay = std::log(10.0);                                              // [1/s]
+  const auto path = [&](double t) { return -0.1 / decay * std::exp(-decay * t); };  // 100 mm/s at first
+  // In a frame of 1/32 s 3.2 mm/s are 0.1 mm: from 1.49 s on. Two windows that begin later end by 2.25 s at the latest.
+  EXPECT_GE(rests_at(path), 1.49 + 2 * kWindow);
+  EXPECT_LE(rests_at(path), 1.49 + 3 * kWindow);
+}
+
+TEST_F(Rest, IsNoSteadySlideHoweverSlow) {
+  for (const double speed : {1.0e-3, 1.0e-4, 1.0e-6}) {
+    EXPECT_EQ(rests_at([&](double t) { return speed * t; }), std::numeric_limits<double>::infinity()) << speed;
+  }
+  EXPECT_LT(rests_at([&](double t) { return 1.0e-9 * t; }), 1.0) << "0.1 mm in a day";
+}
+
+// What begins to fall over moves by 1e-9 m at first and grows by a factor of e every second.
+TEST_F(Rest, IsNoMotionThatGrows) {
+  EXPECT_GT(rests_at([](double t) { return 1.0e-7 * std::exp(t); }), 8.0) << "it moves by 0.1 mm in a frame after 8 s";
+}
+
+// A pendulum of 0.64 m: 0.5 mm are 2 mm/s, which nobody sees in a frame.
+TEST_F(Rest, IsNoSteadySwing) {
+  const auto swing = [](double amplitude, double halves) {
+    return [=](double t) { return amplitude * std::cos(2.0 * std::numbers::pi * t / 1.6) * std::exp2(-t / halves); };
+  };
+  EXPECT_EQ(rests_at(swing(0.5e-3, 100.0)), std::numeric_limits<double>::infinity());
+  EXPECT_LT(rests_at(swing(0.5e-3, 4.0)), 2.0) << "it dies away";
+  EXPECT_LT(rests_at(swing(0.04e-3, 100.0)), 2.0) << "0.08 mm from side to side";
+}
+
+TEST_F(Rest, IsAContactThatRocksByATwentiethOfAMillimetre) {
+  for (const double frequency : {1.3, 7.0, 23.0, 60.0}) {
+    const auto path = [&](double t) { return 0.025e-3 * std::sin(2.0 * std::numbers::pi * frequency * t); };
+    EXPECT_LT(rests_at(path), 1.5) << frequency << " Hz";
   }
 }
 
@@ -76,33 +138,22 @@ TEST_F(Rest, NeedsTwoWindowsAfterTheLastRestlessOne) {
   EXPECT_TRUE(rests(0));
 }
 
-// Each window is quiet on its own: less than an eighth of the largest displacement.
-TEST_F(Rest, DoesNotMoveFartherAndFarther) {
-  for (int window = 0; window < 3; ++window) end_window();
-  for (const double distance : {0.05, 0.08, 0.11}) {
-    for (Index p = 0; p < groups_.count(); ++p) move(p, distance * kMost);
-    end_window();
-  }
-  EXPECT_TRUE(rests(0));
-  for (Index p = 0; p < groups_.count(); ++p) move(p, 0.01 * kMost);
-  end_window();
-  for (Index p = 0; p < groups_.count(); ++p) move(p, 0.11 * kMost);
-  end_window();
-  EXPECT_FALSE(rests(0)) << "eleven times as far";
-}
-
-// One of seven groups moves by 0.3 of the largest displacement, the body by 0.3 / sqrt(7) = 0.113 as root mean square.
+// One of seven groups swings out of sight of the others: 0.2 mm in a frame are 0.08 mm as root mean square of the body.
 TEST_F(Rest, OfABodyAsAWholeIsThatOfAllItsGroups) {
-  for (int window = 0; window < 3; ++window) {
-    move(0, 0.3 * kMost);
+  const auto rests_with = [&](double distance) {
+    state_ = initial_state(network_);
+    for (int window = 0; window < 4; ++window) {
+      end_window();
+      for (int frame = 1; frame <= kFrames; ++frame) {
+        move(0, frame % 2 == 0 ? distance : -distance);
+        detector_.observe(time_ + frame * kWindow / kFrames, state_);
+      }
+    }
     end_window();
-  }
-  EXPECT_TRUE(rests(0));
-  for (int window = 0; window < 3; ++window) {
-    move(0, 0.4 * kMost);
-    end_window();
-  }
-  EXPECT_FALSE(rests(0));
+    return rests(0);
+  };
+  EXPECT_TRUE(rests_with(0.2e-3));
+  EXPECT_FALSE(rests_with(0.5e-3));
   EXPECT_TRUE(rests(1));
 }
 
