@@ -53,8 +53,8 @@ const std::string kTo = R"({ "at": "corner", "which": ["to"] })";
 const std::string kTop = R"("min_max_min", "max_max_min", "min_max_max", "max_max_max")";
 
 std::string scene_text(const std::string& bodies, const std::string& attachments) {
-  return R"({ "duration": 1, "integrator": { "type": "verlet" }, "output": { "forces": true }, "bodies": {)" + bodies +
-         R"(}, "attachments": [)" + attachments + "] }";
+  return R"({ "duration": 1, "air": false, "integrator": { "type": "verlet" }, "output": { "forces": true }, "bodies": {)" +
+         bodies + R"(}, "attachments": [)" + attachments + "] }";
 }
 
 std::string joined(const std::vector<std::string>& parts) {
