@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -11,9 +10,37 @@ namespace sprung {
 namespace {
 
 using Pair = std::pair<Index, Index>;
-using Pairs = std::set<Pair>;
 
 Pair pair_of(Index a, Index b) { return std::minmax(a, b); }
+
+/// A sorted list without duplicates.
+template <class Entry>
+std::vector<Entry> sorted_set(std::vector<Entry> entries) {
+  std::sort(entries.begin(), entries.end());
+  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  return entries;
+}
+
+/// A few pairs of the particles of a body or network.
+class Pairs {
+ public:
+  explicit Pairs(std::vector<Pair> pairs) : pairs_(sorted_set(std::move(pairs))) {
+    for (const auto& [a, b] : pairs_) {
+      in_pair_.resize(std::max(in_pair_.size(), static_cast<std::size_t>(b) + 1));
+      in_pair_[a] = in_pair_[b] = 1;
+    }
+  }
+
+  [[nodiscard]] bool contains(const Pair& pair) const {
+    return static_cast<std::size_t>(pair.second) < in_pair_.size() && in_pair_[pair.first] != 0 && in_pair_[pair.second] != 0 &&
+           std::binary_search(pairs_.begin(), pairs_.end(), pair);
+  }
+
+ private:
+  std::vector<Pair> pairs_;
+  std::vector<char> in_pair_;  ///< whether a particle is in any
+};
+
 Pair ends_of(const Springs& springs, Index s) { return {springs.first[s], springs.second[s]}; }
 
 double length_of(const Springs& springs, Index s, const Points& positions) {
@@ -40,21 +67,21 @@ std::map<Index, std::vector<Index>> neighbours(const Springs& springs, const std
 /// The pairs of particles that shear and bend springs join over broken structural springs.
 Pairs spanned(const Springs& springs, const std::vector<Index>& broken) {
   const auto near = neighbours(springs, broken);
-  Pairs pairs;
+  std::vector<Pair> pairs;
   for (const Index s : broken) {
     if (springs.kind[s] != SpringKind::structural) continue;
     const auto [a, b] = ends_of(springs, s);
     const std::vector<Index>& near_a = near.at(a);
     const std::vector<Index>& near_b = near.at(b);
-    for (const Index i : near_b) pairs.insert(pair_of(a, i));
-    for (const Index i : near_a) pairs.insert(pair_of(b, i));
+    for (const Index i : near_b) pairs.push_back(pair_of(a, i));
+    for (const Index i : near_a) pairs.push_back(pair_of(b, i));
     std::vector<Index> apexes;
     std::ranges::copy_if(near_a, std::back_inserter(apexes), [&](Index i) { return std::ranges::find(near_b, i) != near_b.end(); });
     for (const Index i : apexes) {
-      for (const Index j : apexes) pairs.insert(pair_of(i, j));
+      for (const Index j : apexes) pairs.push_back(pair_of(i, j));
     }
   }
-  return pairs;
+  return Pairs(std::move(pairs));
 }
 
 /// Erases the same entries of several arrays.
@@ -112,10 +139,12 @@ void remove_face_bends(SpringNetwork& network) {
   std::vector<char> gone(static_cast<std::size_t>(bends.count()), 0);
   for (const Body& body : network.bodies) {
     if (body.face_bend_count == 0 || body.surface.torn.empty()) continue;
-    std::set<std::array<Index, 3>> left;
-    for (const auto& corners : body.surface.triangles.colwise()) left.insert(sorted({corners[0], corners[1], corners[2]}));
+    std::vector<std::array<Index, 3>> triangles;
+    for (const auto& corners : body.surface.triangles.colwise()) triangles.push_back(sorted({corners[0], corners[1], corners[2]}));
+    const std::vector<std::array<Index, 3>> left = sorted_set(std::move(triangles));
     const auto is_torn = [&](Index a, Index b, Index c) {
-      return !left.contains(sorted({a - body.first_particle, b - body.first_particle, c - body.first_particle}));
+      return !std::binary_search(left.begin(), left.end(),
+                                 sorted({a - body.first_particle, b - body.first_particle, c - body.first_particle}));
     };
     for (Index f = body.first_face_bend; f < body.first_face_bend + body.face_bend_count; ++f) {
       for (const Index hinge : bends.hinges[f]) {
@@ -130,10 +159,10 @@ void remove_face_bends(SpringNetwork& network) {
 }
 
 /// Tears the surface of a body, in the numbering of the body. `gone` are the pairs of particles whose structural or shear spring is
-/// gone, `structural` those that a structural one joins.
+/// gone, `structural` those that a structural one joins, in any order.
 class SurfaceTearing {
  public:
-  SurfaceTearing(Surface& surface, const Pairs& gone, const Pairs& structural)
+  SurfaceTearing(Surface& surface, const Pairs& gone, const std::vector<Pair>& structural)
       : surface_(surface), gone_(gone), structural_(structural) {}
 
   void tear() {
@@ -174,18 +203,25 @@ class SurfaceTearing {
   }
 
   void add_threads() {
-    Pairs threads;
+    std::vector<Pair> around_torn;
     for (const Index face : surface_.torn) {
       const std::span<const Index> around = corners(face);
-      for (std::size_t i = 0; i < around.size(); ++i) {
-        const Pair side = pair_of(around[i], around[(i + 1) % around.size()]);
-        if (structural_.contains(side)) threads.insert(side);
-      }
+      for (std::size_t i = 0; i < around.size(); ++i) around_torn.push_back(pair_of(around[i], around[(i + 1) % around.size()]));
     }
+    const Pairs sides(std::move(around_torn));
+    std::vector<Pair> covered;
+    const auto cover = [&](const Pair& pair) {
+      if (sides.contains(pair)) covered.push_back(pair);
+    };
     for (const auto& triangle : surface_.triangles.colwise()) {
-      for (Index k = 0; k < 3; ++k) threads.erase(pair_of(triangle[k], triangle[(k + 1) % 3]));
+      for (Index k = 0; k < 3; ++k) cover(pair_of(triangle[k], triangle[(k + 1) % 3]));
     }
-    for (const auto& segment : surface_.segments.colwise()) threads.erase(pair_of(segment[0], segment[1]));
+    for (const auto& segment : surface_.segments.colwise()) cover(pair_of(segment[0], segment[1]));
+    const Pairs kept(std::move(covered));
+    std::vector<Pair> bare;
+    std::ranges::copy_if(structural_, std::back_inserter(bare),
+                         [&](const Pair& pair) { return sides.contains(pair) && !kept.contains(pair); });
+    const std::vector<Pair> threads = sorted_set(std::move(bare));
     Index next = static_cast<Index>(surface_.segments.cols());
     surface_.segments.conservativeResize(2, next + static_cast<Index>(threads.size()));
     for (const auto& [a, b] : threads) surface_.segments.col(next++) << a, b;
@@ -193,15 +229,15 @@ class SurfaceTearing {
 
   Surface& surface_;
   const Pairs& gone_;
-  const Pairs& structural_;
+  const std::vector<Pair>& structural_;
 };
 
 /// The pairs of particles that the springs of a body join for which `wanted` is true, in the numbering of the body.
 template <class Wanted>
-Pairs pairs_of(const Body& body, const Springs& springs, const Wanted& wanted) {
-  Pairs pairs;
+std::vector<Pair> pairs_of(const Body& body, const Springs& springs, const Wanted& wanted) {
+  std::vector<Pair> pairs;
   for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
-    if (wanted(s)) pairs.insert({springs.first[s] - body.first_particle, springs.second[s] - body.first_particle});
+    if (wanted(s)) pairs.emplace_back(springs.first[s] - body.first_particle, springs.second[s] - body.first_particle);
   }
   return pairs;
 }
@@ -250,20 +286,20 @@ std::vector<char> with_dependents(const Springs& springs, const std::vector<Inde
 void tear(SpringNetwork& network, const std::vector<char>& gone) {
   if (std::ranges::count(gone, 0) == static_cast<std::ptrdiff_t>(gone.size())) return;
   const Springs& springs = network.springs;
-  Pairs gone_structural;
+  std::vector<Pair> gone_structural;
   for (Body& body : network.bodies) {
     const bool loses = std::any_of(gone.begin() + body.first_spring, gone.begin() + body.first_spring + body.spring_count,
                                    [](char is_gone) { return is_gone != 0; });
     if (!loses) continue;
     const auto is_structural = [&](Index s) { return springs.kind[s] == SpringKind::structural; };
-    const Pairs pairs = pairs_of(body, springs, [&](Index s) { return gone[s] != 0 && springs.kind[s] != SpringKind::bend; });
-    const Pairs left = pairs_of(body, springs, [&](Index s) { return gone[s] == 0 && is_structural(s); });
+    const Pairs pairs(pairs_of(body, springs, [&](Index s) { return gone[s] != 0 && springs.kind[s] != SpringKind::bend; }));
+    const std::vector<Pair> left = pairs_of(body, springs, [&](Index s) { return gone[s] == 0 && is_structural(s); });
     SurfaceTearing(body.surface, pairs, left).tear();
-    for (const auto& [a, b] : pairs_of(body, springs, [&](Index s) { return gone[s] != 0 && is_structural(s); })) {
-      gone_structural.insert({a + body.first_particle, b + body.first_particle});
+    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+      if (gone[s] != 0 && is_structural(s)) gone_structural.push_back(ends_of(springs, s));
     }
   }
-  remove_angle_bends(network, gone_structural);
+  remove_angle_bends(network, Pairs(std::move(gone_structural)));
   remove_face_bends(network);
   remove_springs(network, gone);
 }
