@@ -36,6 +36,10 @@ struct Material {
   [[nodiscard]] const MaterialValue* find(std::string_view key) const;
 };
 
+/// The `damping_time` [s] of structural and shear springs of cloths and ropes of which springs may break, whatever the preset says.
+/// With less, they recoil from a tear for long, and tear again as they do.
+inline constexpr double kTearingDampingTime = 1.1e-3;
+
 /// All presets: cloths, then ropes, then solids.
 [[nodiscard]] const std::vector<Material>& materials();
 

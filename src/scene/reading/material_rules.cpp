@@ -93,6 +93,12 @@ bool groups_give_damping(const Json& spring) {
   return groups != spring.end() && groups->is_object() && std::ranges::any_of(*groups, gives);
 }
 
+/// Whether springs of the body may break.
+bool may_tear(const Json& body) {
+  if (!body.contains("springs") || !body["springs"].is_object()) return false;
+  return std::ranges::any_of(body["springs"], [](const Json& spring) { return spring.is_object() && spring.contains("break"); });
+}
+
 /// Fills `springs.KIND.KEY`. A material gives a stiffness to angles. Bend springs (model spring) get none from it.
 void fill_spring(const std::string& key, double value, Json& body, std::array<bool, 3>& preset_damps) {
   const std::size_t dot = key.find('.', std::string("springs.").size());
@@ -177,11 +183,13 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
   const bool tetrahedra = shape && std::holds_alternative<TetrahedraFile>(*shape);
   if (preset->stretch_limited && !gives_stiffness(json)) body.preset_limits_stretch = true;
   body.preset = preset->name;
+  const bool tears = preset->kind != MaterialKind::solid && may_tear(json);
   for (const MaterialValue& value : preset->values) {
     if (tetrahedra && value.key.starts_with("springs.shear")) continue;
     const double factor =
         tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
-    fill_value(value.key, value.value * factor, json, body.preset_damps);
+    const bool stretches = value.key == "springs.structural.damping_time" || value.key == "springs.shear.damping_time";
+    fill_value(value.key, tears && stretches ? kTearingDampingTime : value.value * factor, json, body.preset_damps);
   }
   if (is_rope) body.diameter = diameter.value_or(preset->find("diameter")->value);
   body.preset_mass = !has_any(json, {"mass", "particle_mass"}) &&

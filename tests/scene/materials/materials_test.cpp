@@ -218,6 +218,20 @@ TEST(Materials, DampersThatTheSceneGivesAreNotTheMaterials) {
             (Damps{false, true, false}));
 }
 
+TEST(Materials, BodiesThatMayTearDampTheirRecoil) {
+  const SceneFolder folder;
+  for (const char* name : {"cotton", "hemp"}) {
+    const std::string scene = scene_of(*find_material(name), R"(, "springs": {"structural": {"break": 0.1}})");
+    const BodyScene tears = folder.read(scene).bodies.front();
+    EXPECT_EQ(tears.springs.structural->damping_time, kTearingDampingTime) << name;
+    EXPECT_TRUE(tears.preset_damps[0]) << name;
+    EXPECT_LT(folder.read(scene_of(*find_material(name))).bodies.front().springs.structural->damping_time, kTearingDampingTime);
+    EXPECT_EQ(
+        folder.read(scene, {"bodies.thing.springs.structural.damping_time=3e-4"}).bodies.front().springs.structural->damping_time,
+        3e-4);
+  }
+}
+
 // EI and D are constants of angles, with other units than EA: broken_scenes.h has the scenes that lack a stiffness of their own.
 TEST(Materials, BendSpringsTakeTheDampingTimeOfAMaterialButNoStiffness) {
   const SceneFolder folder;
