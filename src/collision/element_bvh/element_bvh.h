@@ -1,6 +1,7 @@
 // BVH over the network's moving elements: which of them may come near each other.
 #pragma once
 
+#include "base/parallel.h"
 #include "collision/element_bvh/element_bvh_leaf.h"
 #include "collision/surface/collision_surface.h"
 
@@ -31,6 +32,10 @@ class ElementBvh {
   /// Pairs of leaves that may come within `margin` [m] of each other between now and the end. Their bodies collide with each other,
   /// and one of the two has a marked element. The order does not depend on the number of threads.
   [[nodiscard]] std::vector<LeafPair> find_pairs(HorizonTimes times, double margin) const;
+
+  /// Calls `visit(number)` once for each leaf of the pairs, in any order and from several threads.
+  template <class Visit>
+  void for_each_leaf(const std::vector<LeafPair>& pairs, const Visit& visit) const;
 
  private:
   struct Node {
@@ -84,5 +89,20 @@ class ElementBvh {
   std::vector<Slot> slots_;    ///< by element
   std::vector<Index> marked_;  ///< leaves that have a marked element
 };
+
+template <class Visit>
+void ElementBvh::for_each_leaf(const std::vector<LeafPair>& pairs, const Visit& visit) const {
+  constexpr Index kLeavesPerTask = 64;
+  std::vector<char> needed(leaves_.size(), 0);
+  for (const LeafPair& pair : pairs) {
+    needed[static_cast<std::size_t>(pair.first)] = 1;
+    needed[static_cast<std::size_t>(pair.second)] = 1;
+  }
+  parallel_chunks(leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      if (needed[k] != 0) visit(k);
+    }
+  });
+}
 
 }  // namespace sprung

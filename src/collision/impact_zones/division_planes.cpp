@@ -12,8 +12,8 @@ namespace sprung {
 namespace {
 
 // How far a pin may end from where its group's motion puts it, as a fraction of its pair's gap. Along linear trajectories a
-// rotation by less than a right angle keeps 0.7 of a gap, and the strain of an anchored group half of it, so that a quarter is left
-// for pins.
+// rotation by less than a right angle keeps 0.7 of a gap, and the strain of a group with blocked vertices half of it, so that a
+// quarter is left for pins.
 constexpr double kMaxPinError = 0.25;
 
 constexpr Index kPairsPerTask = 2048;
@@ -40,11 +40,11 @@ DivisionPlanes::DivisionPlanes(const Points& before, const Points& targets, cons
 
 bool DivisionPlanes::constrain(std::vector<ContactStencil>& pairs) {
   bool changed = false;
-  passing_.clear();
-  for (const Index k : find_passing(pairs)) {
+  crossing_.clear();
+  for (const Index k : find_crossing(pairs)) {
     const ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
     changed = groups_.unite({pair.particles.data(), static_cast<std::size_t>(pair.count())}) || changed;
-    passing_.insert(passing_.end(), pair.particles.begin(), pair.particles.begin() + pair.count());
+    crossing_.insert(crossing_.end(), pair.particles.begin(), pair.particles.begin() + pair.count());
   }
   if (!changed) return false;
   groups_.find_motions();
@@ -62,14 +62,14 @@ void DivisionPlanes::renew_normals(std::vector<ContactStencil>& pairs) const {
   });
 }
 
-std::vector<Index> DivisionPlanes::find_passing(std::vector<ContactStencil>& pairs) const {
+std::vector<Index> DivisionPlanes::find_crossing(std::vector<ContactStencil>& pairs) const {
   const auto count = static_cast<Index>(pairs.size());
-  return collect_from_chunks<Index>(count, kPairsPerTask, [&](Index begin, Index end, std::vector<Index>& passing) {
+  return collect_from_chunks<Index>(count, kPairsPerTask, [&](Index begin, Index end, std::vector<Index>& crossing) {
     for (Index k = begin; k < end; ++k) {
       ContactStencil& pair = pairs[static_cast<std::size_t>(k)];
       if (!(heights_at(pair, ends_).gap() < tolerance_.least())) continue;
       pair.normal = separating_direction(pair, before_);
-      if (passes(pair) && !is_fixed_rigidly(pair)) passing.push_back(k);
+      if (crosses(pair) && !is_fixed_rigidly(pair)) crossing.push_back(k);
     }
   });
 }
@@ -88,15 +88,15 @@ bool DivisionPlanes::is_fixed_rigidly(const ContactStencil& pair) const {
          });
 }
 
-std::vector<Index> DivisionPlanes::anchored() const {
-  std::vector<Index> anchored = groups_.particles();
-  std::erase_if(anchored, [&](Index i) { return !groups_.is_anchored(groups_.group(i)); });
-  return anchored;
+std::vector<Index> DivisionPlanes::moved_with_obstacle() const {
+  std::vector<Index> moved = groups_.particles();
+  std::erase_if(moved, [&](Index i) { return !groups_.moves_with_obstacle(groups_.group(i)); });
+  return moved;
 }
 
 /// Whether the sides end with too small a gap. Sides that touched at the step's begin have no plane to keep. Sides that move
 /// rigidly need none.
-bool DivisionPlanes::passes(const ContactStencil& pair) const {
+bool DivisionPlanes::crosses(const ContactStencil& pair) const {
   const double begun = heights_at(pair, before_).gap();
   if (!(begun > 0.0)) return false;
   const Index group = group_of(pair, begun);

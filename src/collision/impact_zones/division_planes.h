@@ -57,12 +57,12 @@ class DivisionPlanes {
   /// Constrained particles, in any order.
   [[nodiscard]] const std::vector<Index>& constrained() const { return groups_.particles(); }
 
-  /// Constrained particles that move with anchors, in any order.
-  [[nodiscard]] std::vector<Index> anchored() const;
+  /// Constrained particles of groups with blocked vertices, in any order.
+  [[nodiscard]] std::vector<Index> moved_with_obstacle() const;
 
-  /// Particles of pairs that still pass each other, because pins with different motions drag them. Includes pins; in any order,
+  /// Particles of pairs that still cross, because pins with different motions drag them. Includes pins; in any order,
   /// some more than once. Requires that constrain() returned false.
-  [[nodiscard]] const std::vector<Index>& passing() const { return passing_; }
+  [[nodiscard]] const std::vector<Index>& crossing() const { return crossing_; }
 
   /// A half-space for the end of one particle.
   struct Bound {
@@ -73,9 +73,9 @@ class DivisionPlanes {
   [[nodiscard]] std::vector<Bound> bounds(const std::vector<ContactStencil>& pairs) const;
 
  private:
-  /// Numbers of the pairs that pass each other. Pairs that their normals do not separate at the end get new ones first.
-  [[nodiscard]] std::vector<Index> find_passing(std::vector<ContactStencil>& pairs) const;
-  [[nodiscard]] bool passes(const ContactStencil& pair) const;
+  /// Numbers of the pairs that cross. First renews the normals that do not separate their pairs at the end.
+  [[nodiscard]] std::vector<Index> find_crossing(std::vector<ContactStencil>& pairs) const;
+  [[nodiscard]] bool crosses(const ContactStencil& pair) const;
   /// Whether all particles of the pair are fixed and move as a rigid body.
   [[nodiscard]] bool is_fixed_rigidly(const ContactStencil& pair) const;
   /// The group with all free particles of the pair, if its motion also fits the fixed ones; else kNone. The sides begin the step
@@ -92,7 +92,7 @@ class DivisionPlanes {
   const ParticleMotions& motions_;
   MotionGroups groups_;
   Points ends_;
-  std::vector<Index> passing_;
+  std::vector<Index> crossing_;
   SeparationTolerance tolerance_;
 };
 

@@ -1,5 +1,6 @@
 #include "collision/impact_zones/motion_groups.h"
 
+#include "base/sort_unique.h"
 #include "collision/impact_zones/group_motion.h"
 
 #include <algorithm>
@@ -60,7 +61,7 @@ void MotionGroups::find_motions() {
   number_groups();
   const std::vector<std::vector<Index>> pins = pins_of_groups();
   find_means(pins);
-  apply_anchors(pins);
+  apply_blocked(pins);
   apply_rigid_pins(pins);
 }
 
@@ -117,23 +118,20 @@ void MotionGroups::find_means(const std::vector<std::vector<Index>>& pins) {
 std::vector<std::vector<Index>> MotionGroups::pins_of_groups() const {
   std::vector<std::vector<Index>> pins(groups_.size());
   for (const FixedBy& entry : fixed_by_) pins[static_cast<std::size_t>(group(entry.particle))].push_back(entry.pin);
-  for (std::vector<Index>& of_group : pins) {
-    std::sort(of_group.begin(), of_group.end());
-    of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
-  }
+  for (std::vector<Index>& of_group : pins) sort_unique(of_group);
   return pins;
 }
 
-void MotionGroups::apply_anchors(const std::vector<std::vector<Index>>& pins) {
-  if (displacements_.anchors.empty()) return;
-  std::vector<std::vector<KinematicAnchor>> anchors(groups_.size());
-  for (const KinematicAnchor& anchor : displacements_.anchors) {
-    const Index k = group(anchor.particle);
-    if (k != kNone && pins[static_cast<std::size_t>(k)].empty()) anchors[static_cast<std::size_t>(k)].push_back(anchor);
+void MotionGroups::apply_blocked(const std::vector<std::vector<Index>>& pins) {
+  if (displacements_.blocked.empty()) return;
+  std::vector<std::vector<BlockedVertex>> blocked(groups_.size());
+  for (const BlockedVertex& vertex : displacements_.blocked) {
+    const Index k = group(vertex.particle);
+    if (k != kNone && pins[static_cast<std::size_t>(k)].empty()) blocked[static_cast<std::size_t>(k)].push_back(vertex);
   }
   for (std::size_t k = 0; k < groups_.size(); ++k) {
-    if (anchors[k].empty()) continue;
-    groups_[k] = {.motion = common_motion(anchors[k]), .fraction = 0.0, .rotates = true, .anchored = true};
+    if (blocked[k].empty()) continue;
+    groups_[k] = {.motion = common_motion(blocked[k]), .fraction = 0.0, .rotates = true, .with_obstacle = true};
   }
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "collision/impact_zones/group_motion.h"
-#include "collision/obstacle_regions/kinematic_anchor.h"
+#include "collision/obstacle_regions/blocked_vertex.h"
 #include "collision/surface/collision_surface.h"
 
 #include <span>
@@ -14,7 +14,7 @@ namespace sprung {
 /// Displacements that obstacles impose, both lists ascending by particle.
 struct ParticleDisplacements {
   std::vector<ParticleDisplacement> moved{};  ///< of particles in contact with an obstacle
-  std::vector<KinematicAnchor> anchors{};     ///< of particles that move as if they were part of an obstacle
+  std::vector<BlockedVertex> blocked{};       ///< particles that move as if they were part of an obstacle
 };
 
 /// Each group has a reference motion, and a fraction: how far its particles may move from their positions after this motion
@@ -31,9 +31,9 @@ class MotionGroups {
   bool unite(std::span<const Index> particles);
 
   /// Computes one reference motion per group. The first rule that applies wins: (1) locked group with pins: rigid motion of the
-  /// pins, if they have one; (2) pins: mean of their displacements; (3) anchors: their common affine motion, which locks the
-  /// group; (4) particles moved by obstacles: mean of their displacements; (5) otherwise: mean displacement, times 1 - variance /
-  /// mean^2 or 0, so that a falling cloth is not slowed and a resting one does not follow a body that hits it. Resets the
+  /// pins, if they have one; (2) pins: mean of their displacements; (3) blocked vertices: their common affine motion, which locks
+  /// the group; (4) particles moved by obstacles: mean of their displacements; (5) otherwise: mean displacement, times 1 - variance
+  /// / mean^2 or 0, so that a falling cloth is not slowed and a resting one does not follow a body that hits it. Resets the
   /// fractions to 1, and to 0 for locked groups.
   void find_motions();
 
@@ -58,8 +58,8 @@ class MotionGroups {
   /// The plane, moved with the group; constant for kNone and for translations.
   [[nodiscard]] MovedPlane moved(Index group, const Vector3& normal) const;
 
-  /// Whether the group has the motion of anchors.
-  [[nodiscard]] bool is_anchored(Index group) const { return groups_[static_cast<std::size_t>(group)].anchored; }
+  /// Whether the group has the motion of blocked vertices.
+  [[nodiscard]] bool moves_with_obstacle(Index group) const { return groups_[static_cast<std::size_t>(group)].with_obstacle; }
 
   [[nodiscard]] double fraction(Index group) const { return groups_[static_cast<std::size_t>(group)].fraction; }
   void limit_fraction(Index group, double fraction);
@@ -69,7 +69,7 @@ class MotionGroups {
     AffineTransform motion = AffineTransform::Identity();
     double fraction = 1.0;
     bool rotates = false;  ///< the motion may be more than a translation
-    bool anchored = false;
+    bool with_obstacle = false;
   };
   struct FixedBy {
     Index particle;  ///< of the group
@@ -82,7 +82,7 @@ class MotionGroups {
   void find_means(const std::vector<std::vector<Index>>& pins);
   /// By group; ascending.
   [[nodiscard]] std::vector<std::vector<Index>> pins_of_groups() const;
-  void apply_anchors(const std::vector<std::vector<Index>>& pins);
+  void apply_blocked(const std::vector<std::vector<Index>>& pins);
   /// To locked groups.
   void apply_rigid_pins(const std::vector<std::vector<Index>>& pins);
 

@@ -49,10 +49,10 @@ const std::vector<Index>& PairSeparation::constrain(const Points& before, const 
   ends_ = planes.ends();
   constrained_ = planes.constrained();
   std::sort(constrained_.begin(), constrained_.end());
-  passing_ = planes.passing();
-  std::sort(passing_.begin(), passing_.end());
+  crossing_ = planes.crossing();
+  std::sort(crossing_.begin(), crossing_.end());
   bounds_ = planes.bounds(list_.pairs());
-  anchored_ = planes.anchored();
+  moved_with_obstacle_ = planes.moved_with_obstacle();
   return constrained_;
 }
 
@@ -67,14 +67,14 @@ PairSeparation::Sphere PairSeparation::sphere(Index particle) const {
   return {spheres.center(particle, 1.0), spheres.radius(particle)};
 }
 
-const std::vector<Index>& PairSeparation::anchored() const { return anchored_; }
+const std::vector<Index>& PairSeparation::moved_with_obstacle() const { return moved_with_obstacle_; }
 
-bool PairSeparation::passes(Index particle) const { return std::binary_search(passing_.begin(), passing_.end(), particle); }
+bool PairSeparation::crosses(Index particle) const { return std::binary_search(crossing_.begin(), crossing_.end(), particle); }
 
-std::vector<Index> PairSeparation::passing_fixed() const {
+std::vector<Index> PairSeparation::crossing_fixed() const {
   const auto is_driven = [&](Index i) { return surface_.motions[static_cast<std::size_t>(i)] == ParticleMotion::driven; };
   std::vector<Index> fixed;
-  for (const Index i : passing_) {
+  for (const Index i : crossing_) {
     if (!is_fixed(surface_.motions, i) || (!fixed.empty() && fixed.back() == i)) continue;
     const auto elements = list_.topology().elements_at(i);
     const bool driven_as_a_whole = std::ranges::all_of(elements, [&](Index e) {

@@ -48,16 +48,16 @@ class PairSeparation {
   };
   [[nodiscard]] Sphere sphere(Index particle) const;
 
-  /// Constrained particles that move with obstacles as anchors do, in any order.
-  [[nodiscard]] const std::vector<Index>& anchored() const;
+  /// Constrained particles of groups that move with an obstacle, in any order.
+  [[nodiscard]] const std::vector<Index>& moved_with_obstacle() const;
 
-  /// Whether an element of the particle passes another one wherever the particle ends, because pins with different motions drag
+  /// Whether an element of the particle crosses another one wherever the particle ends, because pins with different motions drag
   /// them.
-  [[nodiscard]] bool passes(Index particle) const;
+  [[nodiscard]] bool crosses(Index particle) const;
 
-  /// Fixed particles of such elements, ascending. Driven ones count only if they share an element with another kind: what pins
-  /// drive as a whole passes through other elements that they drive as a whole by intention.
-  [[nodiscard]] std::vector<Index> passing_fixed() const;
+  /// Fixed particles of such elements, ascending. A driven particle counts only if one of its elements has a corner that is not
+  /// driven: elements that pins drive as a whole may cross each other on purpose.
+  [[nodiscard]] std::vector<Index> crossing_fixed() const;
 
   /// Whether the constrained particle may end at p [m]: it is in all half-spaces and in the sphere.
   [[nodiscard]] bool allows(Index particle, const Vector3& p) const;
@@ -74,9 +74,9 @@ class PairSeparation {
   NeighbourList list_;
   Points ends_;
   std::vector<Index> constrained_;  ///< ascending
-  std::vector<Index> passing_;      ///< ascending
+  std::vector<Index> crossing_;     ///< ascending
   std::vector<DivisionPlanes::Bound> bounds_;
-  std::vector<Index> anchored_;
+  std::vector<Index> moved_with_obstacle_;
   bool rotated_ = false;  ///< pairs may have rotated without their normals
 };
 

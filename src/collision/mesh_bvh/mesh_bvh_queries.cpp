@@ -154,32 +154,15 @@ bool changes_side(double begin, double end, CrossingSides sides) {
 using Vector2 = Eigen::Vector2d;
 using TriangleCorners = std::array<Vector3, 3>;
 
-SPRUNG_KERNEL void push_intersecting(const MeshBvh::Node& node, const FloatBox& box, TraversalStack& stack) {
-  Float8 apart = {};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto outside = (node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis]);
-    apart = outside ? Float8{} + 1.0F : apart;
-  }
-  stack.push_within(apart, node.child, 0.0F);
-}
-
 template <class Visit>
 void visit_box(const MeshBvh& tree, const Box3& box, const Visit& visit) {
-  const FloatBox bounds = float_box(box);
-  TraversalStack stack(tree.stack_size());
-  stack.push({0.0F, 0});
-  while (!stack.empty()) {
-    const TraversalEntry entry = stack.pop();
-    if (entry.child < 0) {
-      const TrianglePacket& block = tree.block(~entry.child);
-      for (unsigned lanes = triangles_in_box(block, box); lanes != 0;) {
-        const int lane = pop_lane(lanes);
-        visit(block.triangle[lane], block.corners(lane));
-      }
-    } else {
-      push_intersecting(tree.node(entry.child), bounds, stack);
+  visit_blocks(tree, box, [&](std::int32_t number) {
+    const TrianglePacket& block = tree.block(number);
+    for (unsigned lanes = triangles_in_box(block, box); lanes != 0;) {
+      const int lane = pop_lane(lanes);
+      visit(block.triangle[lane], block.corners(lane));
     }
-  }
+  });
 }
 
 /// Contribution of the edge from a to b to the winding number around p in the plane, with p displaced by an infinitesimal amount,
@@ -204,6 +187,15 @@ int crossing_sign(const TriangleCorners& corners, const Vector3& p) {
 }
 
 }  // namespace
+
+SPRUNG_KERNEL void push_intersecting(const MeshBvh::Node& node, const FloatBox& box, TraversalStack& stack) {
+  Float8 apart = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto outside = (node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis]);
+    apart = outside ? Float8{} + 1.0F : apart;
+  }
+  stack.push_within(apart, node.child, 0.0F);
+}
 
 std::optional<MeshBvh::Nearest> MeshBvh::nearest(const Vector3& p, double radius) const {
   if (!(radius > 0.0)) return std::nullopt;

@@ -4,6 +4,7 @@
 
 #include "base/simd.h"
 #include "base/types.h"
+#include "collision/mesh_bvh/mesh_bvh.h"
 
 #include <array>
 #include <cmath>
@@ -82,5 +83,24 @@ class TraversalStack {
   TraversalEntry* entries_ = local_.data();
   std::size_t size_ = 0;
 };
+
+/// Pushes the children whose boxes intersect the box.
+void push_intersecting(const MeshBvh::Node& node, const FloatBox& box, TraversalStack& stack);
+
+/// Calls `visit(number)` for each block whose box intersects the box, or is close to it.
+template <class Visit>
+void visit_blocks(const MeshBvh& tree, const Box3& box, const Visit& visit) {
+  const FloatBox bounds = float_box(box);
+  TraversalStack stack(tree.stack_size());
+  stack.push({0.0F, 0});
+  while (!stack.empty()) {
+    const std::int32_t child = stack.pop().child;
+    if (child < 0) {
+      visit(~child);
+    } else {
+      push_intersecting(tree.node(child), bounds, stack);
+    }
+  }
+}
 
 }  // namespace sprung

@@ -1,5 +1,7 @@
 #include "collision/obstacle_regions/obstacle_motion.h"
 
+#include "base/sort_unique.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -43,22 +45,22 @@ Index ObstacleMotion::touched_obstacle(Index particle) const {
   return kNone;
 }
 
-KinematicAnchor ObstacleMotion::anchor(Index particle, const Vector3& from, const Vector3& position) const {
-  KinematicAnchor anchor{.particle = particle};
+BlockedVertex ObstacleMotion::blocked_vertex(Index particle, const Vector3& from, const Vector3& position) const {
+  BlockedVertex vertex{.particle = particle};
   for (const PatchSlot& entry : regions_.slots_of(particle)) {
     for (const PatchSafeRegions& regions : regions_.patches_[at(entry.patch)].regions) {
       const Index k = regions.obstacle();
       if (obstacles_.is_at_rest(k) || regions.allow(entry.slot, obstacles_.local(k, position))) continue;
-      anchor.obstacle = k;
-      anchor.motion = obstacles_.after(k) * obstacles_.before(k).inverse();
-      anchor.surface = obstacles_.shape(k).moved_triangle(obstacles_.local_before(k, from));
-      if (!anchor.surface) return anchor;
-      for (Vector3& corner : anchor.surface->before) corner = obstacles_.before(k) * corner;
-      for (Vector3& corner : anchor.surface->after) corner = obstacles_.after(k) * corner;
-      return anchor;
+      vertex.obstacle = k;
+      vertex.motion = obstacles_.after(k) * obstacles_.before(k).inverse();
+      vertex.surface = obstacles_.shape(k).moved_triangle(obstacles_.local_before(k, from));
+      if (!vertex.surface) return vertex;
+      for (Vector3& corner : vertex.surface->before) corner = obstacles_.before(k) * corner;
+      for (Vector3& corner : vertex.surface->after) corner = obstacles_.after(k) * corner;
+      return vertex;
     }
   }
-  return anchor;
+  return vertex;
 }
 
 std::vector<Index> ObstacleMotion::near_obstacles(Index particle) const {
@@ -66,8 +68,7 @@ std::vector<Index> ObstacleMotion::near_obstacles(Index particle) const {
   for (const PatchSlot& entry : regions_.slots_of(particle)) {
     for (const PatchSafeRegions& regions : regions_.patches_[at(entry.patch)].regions) near.push_back(regions.obstacle());
   }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  sort_unique(near);
   return near;
 }
 

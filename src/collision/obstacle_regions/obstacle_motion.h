@@ -40,9 +40,9 @@ class ObstacleMotion {
   /// Appends the positions to which the moving obstacles near the particle move it.
   void append_moved(Index particle, const Vector3& from, std::vector<Vector3>& positions) const;
 
-  /// The particle anchored to the first moving obstacle whose regions do not contain `position`; an anchor at rest if there is
+  /// The particle, blocked by the first moving obstacle whose regions do not contain `position`; a vertex that stays if there is
   /// none.
-  [[nodiscard]] KinematicAnchor anchor(Index particle, const Vector3& from, const Vector3& position) const;
+  [[nodiscard]] BlockedVertex blocked_vertex(Index particle, const Vector3& from, const Vector3& position) const;
 
   /// The corners of elements that moving obstacles cross, moved as whole elements (see
   /// ObstacleShape::moved_element). Ascending by particle; a corner of several elements moves with the one nearest to its obstacle.

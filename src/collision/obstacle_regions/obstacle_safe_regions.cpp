@@ -1,6 +1,7 @@
 #include "collision/obstacle_regions/obstacle_safe_regions.h"
 
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "collision/core/block_bounds.h"
 
 #include <algorithm>
@@ -121,8 +122,7 @@ void ObstacleSafeRegions::append_leaving(Index p, const PatchSafeRegions& region
 std::vector<Index> ObstacleSafeRegions::leaving() const {
   std::vector<Index> particles;
   for (const Patch& patch : patches_) particles.insert(particles.end(), patch.leaving.begin(), patch.leaving.end());
-  std::sort(particles.begin(), particles.end());
-  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  sort_unique(particles);
   return particles;
 }
 
@@ -206,8 +206,7 @@ std::vector<Index> ObstacleSafeRegions::patches_around(const std::vector<Index>&
   for (const Index i : particles) {
     for (const PatchSlot& entry : slots_of(i)) around.push_back(entry.patch);
   }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sort_unique(around);
   return around;
 }
 

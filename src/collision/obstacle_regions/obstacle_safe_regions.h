@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/core/contact.h"
-#include "collision/obstacle_regions/kinematic_anchor.h"
+#include "collision/obstacle_regions/blocked_vertex.h"
 #include "collision/obstacle_regions/patch_paths.h"
 #include "collision/obstacle_regions/patch_safe_regions.h"
 #include "collision/obstacle_regions/permitted_crossing.h"

@@ -1,5 +1,6 @@
 #include "collision/obstacle_regions/patch_safe_regions.h"
 
+#include "base/grouped_entries.h"
 #include "collision/core/half_space.h"
 
 #include <algorithm>
@@ -67,6 +68,24 @@ SafeRegionRequest request(const RegionDemand& demand, const ElementPath& path) {
 }
 
 }  // namespace
+
+PatchTopology::PatchTopology(const CollisionSurface& surface, const ElementPatch& patch) {
+  for (Index e = patch.first_element; e < patch.first_element + patch.element_count; ++e) {
+    const Element& element = surface.elements[at(e)];
+    Corners corners{.count = element.corners};
+    for (std::size_t k = 0; k < at(element.corners); ++k) {
+      const auto position = std::lower_bound(patch.particles.begin(), patch.particles.end(), element.particles[k]);
+      corners.slots[k] = static_cast<Index>(position - patch.particles.begin());
+    }
+    corners_.push_back(corners);
+  }
+  const auto visit_all = [&](const auto& add) {
+    for (Index e = 0; e < element_count(); ++e) {
+      for (std::size_t k = 0; k < at(corners(e).count); ++k) add(corners(e).slots[k], e);
+    }
+  };
+  group_entries(patch.particles.size(), visit_all, first_, elements_);
+}
 
 ClosestPointTracker::Search ClosestPointTracker::next_search(Index element, const ElementCorners& corners, const Vector3& drift,
                                                              double gap, bool is_round) {

@@ -29,12 +29,11 @@ std::unique_ptr<ObstacleShape> checked_shape(const std::string& key, const Obsta
 std::vector<std::shared_ptr<const ObstacleShape>> checked_shapes(const std::vector<Obstacle>& obstacles) {
   std::vector<std::shared_ptr<const ObstacleShape>> shapes;
   ProblemList problems;
-  for (const Obstacle& obstacle : obstacles) {
-    const std::string key = "obstacles." + obstacle.name;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const Obstacle& obstacle = obstacles[k];
+    const std::string key = obstacle_key(obstacle, k);
     shapes.push_back(checked_shape(key + ".shape", obstacle.geometry, problems));
-    if (!obstacle.rest_pose.matrix().allFinite()) {
-      problems.add(key + ".place", "", "must be finite", "give a position in m and a rotation in degrees");
-    }
+    check_pose(key + ".rest_pose", obstacle.rest_pose, problems);
     check_motion(key + ".motion", obstacle.motion, problems);
     check_material(key, obstacle.material, problems);
   }
@@ -55,6 +54,10 @@ PosedObstacle posed_in(const Obstacle& obstacle, std::shared_ptr<const ObstacleS
 }
 
 }  // namespace
+
+std::string obstacle_key(const Obstacle& obstacle, std::size_t number) {
+  return obstacle.name.empty() ? entry_key("obstacles", number) : "obstacles." + obstacle.name;
+}
 
 ObstacleSet::ObstacleSet(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)), shapes_(checked_shapes(obstacles_)) {
   pose();

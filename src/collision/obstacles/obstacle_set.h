@@ -3,7 +3,9 @@
 
 #include "collision/shapes/obstacle.h"
 
+#include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace sprung {
@@ -12,13 +14,16 @@ class BroadPhase;
 class ObstacleShape;
 struct PosedObstacles;
 
+/// `obstacles.ball`, or `obstacles[2]` if it has no name.
+[[nodiscard]] std::string obstacle_key(const Obstacle& obstacle, std::size_t number);
+
 /// Const after construction, except for the materials. Const members may be called from several threads at the same time, and take
 /// constant time. Construction is costly: it checks each mesh and builds a tree of its n triangles, O(n log n). Copies share shapes
 /// and broad phase.
 class ObstacleSet {
  public:
-  /// Throws InputError, which names every problem of every obstacle: invalid shapes, poses that are not finite, keyframes that are
-  /// not sorted or not finite, materials that violate ContactMaterial.
+  /// Throws InputError, which names every problem of every obstacle: invalid shapes, poses that are no rotation and translation,
+  /// keyframes that are not sorted or not finite, materials that violate ContactMaterial.
   explicit ObstacleSet(std::vector<Obstacle> obstacles = {});
 
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const { return obstacles_; }
@@ -33,7 +38,7 @@ class ObstacleSet {
 
   [[nodiscard]] double max_thickness() const { return max_thickness_; }  ///< [m]
 
-  /// Replaces the motion of obstacle k, whose present pose must not change by it. Not thread-safe.
+  /// Replaces the motion of obstacle k. The pose at the present time must stay the same. Not thread-safe.
   void set_motion(Index k, const Motion& motion);
 
   /// Replaces the contact material of obstacle k. Requires a material that keeps the rules of ContactMaterial. Not thread-safe.

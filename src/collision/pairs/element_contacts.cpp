@@ -28,7 +28,7 @@ constexpr double kSlidingDisplacement = 0.05;
 constexpr double kDeepEntry = 0.1;
 
 // A candidate that is far apart is checked again after at most this many steps.
-constexpr int kMaxRest = 4;
+constexpr int kMaxSkipSteps = 4;
 
 class ElementContacts {
  public:
@@ -41,8 +41,8 @@ class ElementContacts {
         largest_displacement_(std::sqrt((after - before).colwise().squaredNorm().maxCoeff())) {}
 
   void append(ContactCandidate& candidate, std::vector<Contact>& contacts) const {
-    if (candidate.rest > 0) {
-      --candidate.rest;
+    if (candidate.skip_steps > 0) {
+      --candidate.skip_steps;
       return;
     }
     ContactStencil& stencil = candidate.stencil;
@@ -146,7 +146,7 @@ class ElementContacts {
     const double slack = std::min(begin, end) - reach;
     if (!(slack >= 0.0)) return false;
     const double approach = std::max(begin - end, 0.0) + displacement;
-    candidate.rest = slack < kMaxRest * approach ? static_cast<int>(slack / approach) : kMaxRest;
+    candidate.skip_steps = slack < kMaxSkipSteps * approach ? static_cast<int>(slack / approach) : kMaxSkipSteps;
     return true;
   }
 

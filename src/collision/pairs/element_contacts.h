@@ -18,7 +18,7 @@ struct ContactCandidate {
   std::array<int, 2> edge{};        ///< of an edge-edge stencil: each edge's number in its element
   double gap = 0.0;                 ///< that contact keeps between the sides [m]
   double reach = 0.0;               ///< distance below which contact checks the sides [m]
-  int rest = 0;                     ///< steps that may skip the candidate, because its sides are far apart
+  int skip_steps = 0;               ///< steps that may skip the candidate, because its sides are far apart
 };
 
 /// Appends a contact for each candidate that comes within its reach between `before` and `after` [m], 3 x n, and whose closest

@@ -29,7 +29,6 @@ constexpr double kMuchLonger = 1.5;
 
 constexpr Index kParticlesPerTask = 1024;
 constexpr Index kFansPerTask = 128;
-constexpr Index kLeavesPerTask = 64;
 constexpr Index kLeafPairsPerTask = 32;
 
 std::vector<double> sphere_radii(const CollisionSurface& surface, const Points& rest) {
@@ -170,7 +169,7 @@ void NeighbourList::find_pairs(const Points& before) {
   const HorizonTimes times{age_, horizon_};
   const NeighbourListState state{before, spheres_, horizon_ - age_, marked_};
   const std::vector<ElementBvh::LeafPair> leaves = tree_.find_pairs(times, 0.0);
-  find_corners_of(leaves, times);
+  tree_.for_each_leaf(leaves, [&](std::size_t k) { find_corners(tree_.leaf(static_cast<Index>(k)), times, corners_[k]); });
   const auto leaf = [&](Index number) { return PositionedLeaf{tree_.leaf(number), corners_[static_cast<std::size_t>(number)]}; };
   const auto count = static_cast<Index>(leaves.size());
   const auto search = [&](Index begin, Index end, std::vector<ContactStencil>& batch) {
@@ -182,20 +181,6 @@ void NeighbourList::find_pairs(const Points& before) {
   };
   const auto found = collect_from_chunks<ContactStencil>(count, kLeafPairsPerTask, search);
   pairs_.insert(pairs_.end(), found.begin(), found.end());
-}
-
-void NeighbourList::find_corners_of(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times) {
-  std::vector<char> needed(corners_.size(), 0);
-  for (const ElementBvh::LeafPair& pair : pairs) {
-    needed[static_cast<std::size_t>(pair.first)] = 1;
-    needed[static_cast<std::size_t>(pair.second)] = 1;
-  }
-  parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
-    for (Index number = begin; number < end; ++number) {
-      const auto k = static_cast<std::size_t>(number);
-      if (needed[k] != 0) find_corners(tree_.leaf(number), times, corners_[k]);
-    }
-  });
 }
 
 bool NeighbourList::has_marked(const ContactStencil& stencil) const {

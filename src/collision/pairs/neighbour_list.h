@@ -35,7 +35,7 @@ class NeighbourList {
 
   /// The caller may change their normals.
   [[nodiscard]] std::vector<ContactStencil>& pairs() { return pairs_; }
-  /// The caller may change their normals and rests.
+  /// The caller may change their normals and the steps that may skip them.
   [[nodiscard]] std::vector<ContactCandidate>& candidates() { return candidates_; }
   [[nodiscard]] const VertexBounds& spheres() const { return spheres_; }
   [[nodiscard]] const SurfaceTopology& topology() const { return topology_; }
@@ -49,7 +49,6 @@ class NeighbourList {
   void test_fans();
   void mark_elements();
   void find_pairs(const Points& before);
-  void find_corners_of(const std::vector<ElementBvh::LeafPair>& pairs, HorizonTimes times);
   [[nodiscard]] bool has_marked(const ContactStencil& stencil) const;
   void find_candidates();
   void clear_marks();

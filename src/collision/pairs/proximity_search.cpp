@@ -16,7 +16,6 @@ constexpr double kMaxGapOfRest = 0.4;
 constexpr double kMaxMarginOfRest = 0.1;
 
 constexpr Index kLeafPairsPerTask = 16;
-constexpr Index kLeavesPerTask = 64;
 
 }  // namespace
 
@@ -49,7 +48,7 @@ std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBound
                                                                HorizonTimes times) {
   const Search search{spheres, marked, times};
   const std::vector<ElementBvh::LeafPair> pairs = tree_.find_pairs(times, largest_gap_ + margin_);
-  prepare_sides(pairs, search);
+  tree_.for_each_leaf(pairs, [&](std::size_t k) { prepare(sides_[k], search); });
   const auto count = static_cast<Index>(pairs.size());
   return collect_from_chunks<ContactCandidate>(count, kLeafPairsPerTask, [&](Index begin, Index end, auto& batch) {
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
@@ -59,19 +58,6 @@ std::vector<ContactCandidate> ProximitySearch::find_candidates(const VertexBound
       append_vertices(a, b, near, search, batch);
       if (&a != &b) append_vertices(b, a, lanes_near(b, a, search), search, batch);
       append_edges(a, b, near, search, batch);
-    }
-  });
-}
-
-void ProximitySearch::prepare_sides(const std::vector<ElementBvh::LeafPair>& pairs, const Search& search) {
-  std::vector<char> needed(sides_.size(), 0);
-  for (const ElementBvh::LeafPair& pair : pairs) {
-    needed[static_cast<std::size_t>(pair.first)] = 1;
-    needed[static_cast<std::size_t>(pair.second)] = 1;
-  }
-  parallel_chunks(tree_.leaf_count(), kLeavesPerTask, [&](Index begin, Index end) {
-    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      if (needed[k] != 0) prepare(sides_[k], search);
     }
   });
 }

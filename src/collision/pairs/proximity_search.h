@@ -43,7 +43,6 @@ class ProximitySearch {
     HorizonTimes times;
   };
 
-  void prepare_sides(const std::vector<ElementBvh::LeafPair>& pairs, const Search& search);
   void prepare(Side& side, const Search& search) const;
   void prepare_edges(Side& side, const Search& search) const;
   /// Lanes of `a` that may be near a lane of `b` such that one of the two is marked.

@@ -1,5 +1,3 @@
-#include "collision/primitives/convex_separating_plane.h"
-
 #include "collision/primitives/primitive_distance.h"
 
 #include <algorithm>

@@ -1,9 +1,7 @@
 // A primitive as the shape of an obstacle, based on its signed distance, and the safe region of an element before it.
 #pragma once
 
-#include "collision/primitives/convex_separating_plane.h"
 #include "collision/primitives/primitive_distance.h"
-#include "collision/safe_regions/safe_region.h"
 
 #include <algorithm>
 #include <cmath>

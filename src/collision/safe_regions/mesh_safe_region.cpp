@@ -162,14 +162,6 @@ void find_nearest(const MeshBvh& tree, const ClosestFeatures& last, double near,
   visit_nearest(tree, near, region, builder);
 }
 
-/// 0 for children that intersect the box, infinite for the others.
-SPRUNG_KERNEL void bound_children(const MeshBvh::Node& node, const FloatBox& box, Float8& bounds) {
-  bounds = Float8{};
-  for (int axis = 0; axis < 3; ++axis) {
-    bounds = ((node.min[axis] > box.max[axis]) | (node.max[axis] < box.min[axis])) ? Float8{} + kInfinity : bounds;
-  }
-}
-
 /// The largest squared difference [m^2] between `drift` and the displacement of a corner in the packet.
 SPRUNG_KERNEL double max_deviation(const TrianglePacket& before, const TrianglePacket& after, const Vector3& drift) {
   Double4 farthest{};
@@ -188,20 +180,10 @@ SPRUNG_KERNEL double max_deviation(const TrianglePacket& before, const TriangleP
 
 /// The largest difference [m] between `drift` and the displacement of a corner of a triangle near the box.
 double max_deviation(const MeshBvh& before, const MeshBvh& after, const Box3& box, const Vector3& drift) {
-  const FloatBox near = float_box(box);
   double farthest2 = 0.0;
-  TraversalStack stack(after.stack_size());
-  stack.push({0.0F, 0});
-  while (!stack.empty()) {
-    const std::int32_t child = stack.pop().child;
-    if (child < 0) {
-      farthest2 = std::max(farthest2, max_deviation(before.block(~child), after.block(~child), drift));
-      continue;
-    }
-    Float8 bounds;
-    bound_children(after.node(child), near, bounds);
-    stack.push_within(bounds, after.node(child).child, 0.0F);
-  }
+  visit_blocks(after, box, [&](std::int32_t number) {
+    farthest2 = std::max(farthest2, max_deviation(before.block(number), after.block(number), drift));
+  });
   return std::sqrt(farthest2);
 }
 

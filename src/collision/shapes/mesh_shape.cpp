@@ -1,9 +1,10 @@
 #include "collision/shapes/mesh_shape.h"
 
 #include "base/error.h"
+#include "base/format.h"
+#include "base/problem_list.h"
 #include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/safe_regions/mesh_safe_region.h"
-#include "collision/shapes/mesh_validation.h"
 #include "geometry/queries/closest_pair.h"
 #include "geometry/queries/side_of_plane.h"
 #include "geometry/queries/simplex_crossing.h"
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,13 +36,68 @@ constexpr double kClearFraction = 1.0 - 0x1p-20;
 // Intervals that a substep has at once: its own, its begin, and one of a subdivision.
 constexpr std::size_t kMaxSpares = 3;
 
+// With an invalid mesh FCL would crash or lose contacts silently.
+
+// The search computes squared distances in single precision first. The square of a larger coordinate would not be finite.
+constexpr double kLargestCoordinate = 1e15;
+
+/// Adds a problem for the first invalid vertex only.
+void check_vertices(const std::string& key, const Points& vertices, ProblemList& problems) {
+  for (Index i = 0; i < vertices.cols(); ++i) {
+    if ((vertices.col(i).array().abs() <= kLargestCoordinate).all()) continue;
+    const bool finite = vertices.col(i).allFinite();
+    problems.add(key + ": vertex " + std::to_string(i), "",
+                 finite ? "must be within " + format_number(kLargestCoordinate) + " m of the origin" : "must be finite",
+                 finite ? "use a smaller scale" : "import and clean the mesh");
+    return;
+  }
+}
+
+void check_triangles(const std::string& key, const Triangles& triangles, Eigen::Index vertices, ProblemList& problems) {
+  if (triangles.cols() == 0) problems.add(key, "", "must have triangles", "");
+  for (Index t = 0; t < triangles.cols(); ++t) {
+    const auto corners = triangles.col(t);
+    if (corners.minCoeff() >= 0 && corners.maxCoeff() < vertices) continue;
+    problems.add(key + ": triangle " + std::to_string(t), "", "must use vertices from 0 to " + std::to_string(vertices - 1),
+                 "import and clean the mesh");
+  }
+}
+
+void require_usable(const TriangleMesh& mesh) {
+  ProblemList problems;
+  check_vertices("mesh", mesh.vertices, problems);
+  check_triangles("mesh", mesh.triangles, mesh.vertices.cols(), problems);
+  problems.throw_if_any();
+}
+
+void require_usable(const MeshSequence& sequence) {
+  if (sequence.frames.empty()) throw InputError(Problem{.key = "sequence", .rule = "must have frames"});
+  ProblemList problems;
+  const Eigen::Index vertices = sequence.frames.front().cols();
+  for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
+    const std::string key = "sequence: frame " + std::to_string(k);
+    check_vertices(key, sequence.frames[k], problems);
+    if (sequence.frames[k].cols() == vertices) continue;
+    problems.add(key, std::to_string(sequence.frames[k].cols()) + " vertices",
+                 "must have as many as the first frame, " + std::to_string(vertices), "");
+  }
+  check_triangles("sequence", sequence.triangles, vertices, problems);
+  if (!(std::isfinite(sequence.frame_rate) && sequence.frame_rate > 0.0)) {
+    problems.add("frame_rate", format_number(sequence.frame_rate), "must be greater than 0 and finite", "");
+  }
+  if (!std::isfinite(sequence.start)) {
+    problems.add("start", format_number(sequence.start), "must be finite", "");
+  }
+  problems.throw_if_any();
+}
+
 double largest_coordinate(const Points& vertices) { return vertices.cwiseAbs().maxCoeff(); }
 
 }  // namespace
 
 /// Shapes of former intervals, whose memory new ones reuse: it is as large as the mesh, and a substep needs one or more.
 struct MeshShape::Spares {
-  std::unique_ptr<MeshShape> take() {
+  std::unique_ptr<MeshShape> reuse() {
     const std::lock_guard lock(mutex);
     if (shapes.empty()) return nullptr;
     std::unique_ptr<MeshShape> last = std::move(shapes.back());
@@ -94,7 +151,7 @@ void MeshShape::fit_to(double begin, double end) {
 
 std::shared_ptr<const ObstacleShape> MeshShape::in_interval(double begin, double end) const {
   if (!deforms_) return nullptr;
-  std::unique_ptr<MeshShape> shape = spares_ ? spares_->take() : nullptr;
+  std::unique_ptr<MeshShape> shape = spares_ ? spares_->reuse() : nullptr;
   if (shape) shape->fit_to(begin, end);
   if (!shape) shape.reset(new MeshShape(*this, begin, end));
   return std::shared_ptr<MeshShape>(shape.release(), [spares = spares_](MeshShape* unused) {

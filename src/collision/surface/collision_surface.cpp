@@ -1,5 +1,7 @@
 #include "collision/surface/collision_surface.h"
 
+#include "base/grouped_entries.h"
+#include "base/sort_unique.h"
 #include "collision/core/block_bounds.h"
 
 #include <algorithm>
@@ -47,26 +49,19 @@ ElementPatch make_patch(const std::vector<Element>& elements, std::size_t begin,
     const auto corners = corners_of(elements[e]);
     patch.particles.insert(patch.particles.end(), corners.begin(), corners.end());
   }
-  std::sort(patch.particles.begin(), patch.particles.end());
-  patch.particles.erase(std::unique(patch.particles.begin(), patch.particles.end()), patch.particles.end());
+  sort_unique(patch.particles);
   return patch;
 }
 
 void list_slots(CollisionSurface& surface, std::size_t particles) {
-  surface.first_slot.assign(particles + 1, 0);
-  for (const ElementPatch& patch : surface.patches) {
-    for (const Index particle : patch.particles) ++surface.first_slot[static_cast<std::size_t>(particle) + 1];
-  }
-  for (std::size_t i = 0; i < particles; ++i) surface.first_slot[i + 1] += surface.first_slot[i];
-  surface.slots.resize(static_cast<std::size_t>(surface.first_slot.back()));
-  std::vector<Index> next = surface.first_slot;
-  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    const std::vector<Index>& own = surface.patches[p].particles;
-    for (std::size_t slot = 0; slot < own.size(); ++slot) {
-      const Index at = next[static_cast<std::size_t>(own[slot])]++;
-      surface.slots[static_cast<std::size_t>(at)] = {static_cast<Index>(p), static_cast<Index>(slot)};
+  const auto visit_all = [&](const auto& add) {
+    for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+      const std::vector<Index>& own = surface.patches[p].particles;
+      for (std::size_t slot = 0; slot < own.size(); ++slot)
+        add(own[slot], PatchSlot{static_cast<Index>(p), static_cast<Index>(slot)});
     }
-  }
+  };
+  group_entries(particles, visit_all, surface.first_slot, surface.slots);
 }
 
 std::vector<double> mean_edge_lengths(const std::vector<Element>& elements, const Points& positions, std::size_t bodies) {

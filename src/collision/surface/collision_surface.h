@@ -27,8 +27,8 @@ struct Element {
 /// How a particle moves in a step.
 enum class ParticleMotion : std::uint8_t {
   free,     ///< forces and contact; truncation stops it
-  driven,   ///< a pin that moves, which nothing stops: the pin may take its elements through an obstacle or other elements
-  at_rest,  ///< nothing: it sleeps, or a pin holds it still. Only obstacles and driven particles may cross its elements
+  driven,   ///< moved by a pin, never stopped; its elements may cross obstacles and other elements
+  at_rest,  ///< asleep, or a pin keeps it still; only obstacles and driven particles may cross its elements
 };
 using ParticleMotions = std::vector<ParticleMotion>;  ///< by particle
 

@@ -1,5 +1,6 @@
 #include "collision/surface/surface_topology.h"
 
+#include "base/grouped_entries.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -77,18 +78,12 @@ SurfaceTopology::SurfaceTopology(const std::vector<Element>& elements, Index par
 }
 
 void SurfaceTopology::list_elements(const std::vector<Element>& elements, Index particles) {
-  first_element_.assign(static_cast<std::size_t>(particles) + 1, 0);
-  for (const Element& element : elements) {
-    for (const Index particle : corners_of(element)) ++first_element_[static_cast<std::size_t>(particle) + 1];
-  }
-  for (std::size_t i = 1; i < first_element_.size(); ++i) first_element_[i] += first_element_[i - 1];
-  elements_.resize(static_cast<std::size_t>(first_element_.back()));
-  std::vector<Index> next = first_element_;
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    for (const Index particle : corners_of(elements[e])) {
-      elements_[static_cast<std::size_t>(next[static_cast<std::size_t>(particle)]++)] = static_cast<Index>(e);
+  const auto visit_all = [&](const auto& add) {
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      for (const Index particle : corners_of(elements[e])) add(particle, static_cast<Index>(e));
     }
-  }
+  };
+  group_entries(static_cast<std::size_t>(particles), visit_all, first_element_, elements_);
 }
 
 void SurfaceTopology::give_corners(const std::vector<Element>& elements) {
@@ -159,11 +154,11 @@ FeatureEdges::FeatureEdges(const CollisionSurface& surface, const SurfaceTopolog
 
 void FeatureEdges::update(const Points& positions) {
   parallel_chunks(features_.edge_count(), kEdgesPerTask, [&](Index begin, Index end) {
-    for (Index edge = begin; edge < end; ++edge) sharp_[static_cast<std::size_t>(edge)] = turns(edge, positions) ? 1 : 0;
+    for (Index edge = begin; edge < end; ++edge) sharp_[static_cast<std::size_t>(edge)] = is_bent(edge, positions) ? 1 : 0;
   });
 }
 
-bool FeatureEdges::turns(Index edge, const Points& positions) const {
+bool FeatureEdges::is_bent(Index edge, const Points& positions) const {
   const SurfaceTopology::Side side = features_.owner(edge);
   const Index across = features_.across(side.element, side.edge);
   if (across == kNone) return true;

@@ -97,7 +97,7 @@ class FeatureEdges {
   [[nodiscard]] bool is_sharp(Index edge) const { return sharp_[static_cast<std::size_t>(edge)] != 0; }
 
  private:
-  [[nodiscard]] bool turns(Index edge, const Points& positions) const;
+  [[nodiscard]] bool is_bent(Index edge, const Points& positions) const;
 
   const CollisionSurface& surface_;
   const SurfaceTopology& features_;

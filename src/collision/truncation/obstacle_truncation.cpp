@@ -1,5 +1,6 @@
 #include "collision/truncation/obstacle_truncation.h"
 
+#include "base/sort_unique.h"
 #include "collision/truncation/vertex_truncation.h"
 
 #include <algorithm>
@@ -218,10 +219,7 @@ bool ObstacleTruncation::check_pins(const ObstacleFrame& obstacles, const std::v
 
 TruncationResult ObstacleTruncation::continue_stopped(const std::vector<Index>& particles, const Outcomes& outcomes,
                                                       const StepPaths& paths, Points& after) {
-  std::vector<Index> stopped;
-  for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (outcomes[n] == Outcome::stopped) stopped.push_back(particles[n]);
-  }
+  std::vector<Index> stopped = particles_with(Outcome::stopped, particles, outcomes);
   stopped_ = stopped;
   TruncationResult truncation;
   truncation.truncated = count(outcomes, Outcome::infeasible) + static_cast<Index>(stopped.size());
@@ -255,16 +253,12 @@ bool ObstacleTruncation::can_continue(Index i, const StepPaths& paths, const Poi
 
 // Corners of crossed elements are listed even if they are fixed or were not clipped.
 void ObstacleTruncation::list_infeasible(const std::vector<Index>& particles, const Outcomes& outcomes) {
-  infeasible_.clear();
-  for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (outcomes[n] == Outcome::infeasible) infeasible_.push_back(particles[n]);
-  }
+  infeasible_ = particles_with(Outcome::infeasible, particles, outcomes);
   if (!regions_.any_crossed()) return;
   for (Index i = 0; i < static_cast<Index>(surface_.motions.size()); ++i) {
     if (regions_.is_crossed(i)) infeasible_.push_back(i);
   }
-  std::sort(infeasible_.begin(), infeasible_.end());
-  infeasible_.erase(std::unique(infeasible_.begin(), infeasible_.end()), infeasible_.end());
+  sort_unique(infeasible_);
 }
 
 std::vector<Index> ObstacleTruncation::movable(std::vector<Index> particles, const StepPaths& paths) const {

@@ -14,33 +14,25 @@ constexpr int kLocalRounds = 4;
 // because two sets could alternate.
 constexpr int kMaxRenewals = 32;
 
-std::vector<Index> find_infeasible(const std::vector<Index>& particles, const Outcomes& outcomes) {
-  std::vector<Index> found;
-  for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (outcomes[n] == Outcome::infeasible) found.push_back(particles[n]);
-  }
-  return found;
-}
-
 }  // namespace
 
 PairTruncation::PairTruncation(const ObstacleFrame& obstacles, ObstacleSafeRegions& regions, PairSeparation& pairs,
                                const std::vector<Index>& movable)
     : obstacles_(obstacles), regions_(regions), pairs_(pairs), movable_(movable) {}
 
-// The loop ends: each round makes at least one particle an anchor, or a resting anchor move, and neither is undone.
+// The loop ends: each round adds at least one blocked vertex, or makes a resting one move, and neither is undone.
 Outcomes PairTruncation::clip(const Points& before, Points& after) {
   const Points allowed = after;
   Outcomes outcomes = clip_constrained(before, after);
   if (count(outcomes, Outcome::infeasible) > 0) {
     const StepPaths paths{obstacles_, before, allowed};
-    for (int round = 0; anchor_infeasible(outcomes, before, after); ++round) {
+    for (int round = 0; block_infeasible(outcomes, before, after); ++round) {
       if (round == 0) regions_.update(paths);
       regions_.renew_around(round < kLocalRounds ? blocked_by_obstacles(outcomes) : movable_, paths);
       clip_before_obstacles(paths, after);
       outcomes = clip_constrained(before, after);
     }
-    accept_anchored(after, outcomes);
+    accept_moved(after, outcomes);
   }
   Outcomes all = of_movable(outcomes);
   check_unplaced(after, all);
@@ -58,23 +50,24 @@ Outcomes PairTruncation::clip_constrained(const Points& before, Points& after) {
 void PairTruncation::clip_before_obstacles(const StepPaths& paths, Points& after) {
   after = paths.to;
   const VertexTruncation truncation(regions_);
-  unplaced_ = find_infeasible(movable_, truncation.clip(movable_, paths, after));
+  unplaced_ = particles_with(Outcome::infeasible, movable_, truncation.clip(movable_, paths, after));
   for (int round = 0; round < kMaxRenewals && !unplaced_.empty(); ++round) {
     regions_.renew_around(unplaced_, paths);
-    const std::vector<Index> last = std::exchange(unplaced_, find_infeasible(movable_, truncation.clip(movable_, paths, after)));
+    const std::vector<Index> last =
+        std::exchange(unplaced_, particles_with(Outcome::infeasible, movable_, truncation.clip(movable_, paths, after)));
     if (unplaced_ == last) break;
   }
 }
 
-bool PairTruncation::anchor_infeasible(const Outcomes& outcomes, const Points& before, const Points& after) {
+bool PairTruncation::block_infeasible(const Outcomes& outcomes, const Points& before, const Points& after) {
   bool changed = false;
   for (const Index i : blocked_by_obstacles(outcomes)) {
-    const KinematicAnchor anchor = ObstacleMotion(regions_, obstacles_).anchor(i, before.col(i), after.col(i));
-    const auto found = find_anchor(i);
-    if (found == displacements_.anchors.end() || found->particle != i) {
-      displacements_.anchors.insert(found, anchor);
-    } else if (anchor.moves() && !found->moves()) {
-      *found = anchor;
+    const BlockedVertex vertex = ObstacleMotion(regions_, obstacles_).blocked_vertex(i, before.col(i), after.col(i));
+    const auto found = find_blocked(i);
+    if (found == displacements_.blocked.end() || found->particle != i) {
+      displacements_.blocked.insert(found, vertex);
+    } else if (vertex.moves() && !found->moves()) {
+      *found = vertex;
     } else {
       continue;
     }
@@ -85,15 +78,15 @@ bool PairTruncation::anchor_infeasible(const Outcomes& outcomes, const Points& b
 
 // Before a deforming surface a region shrinks by all motion that differs from the motion of the closest points. That may leave no
 // room. So a particle that moved with the surface is infeasible only if the surface crosses one of its elements.
-void PairTruncation::accept_anchored(const Points& after, Outcomes& outcomes) {
-  std::vector<Index> anchored;
+void PairTruncation::accept_moved(const Points& after, Outcomes& outcomes) {
+  std::vector<Index> moved;
   for (const Index i : blocked_by_obstacles(outcomes)) {
-    const auto anchor = find_anchor(i);
-    if (anchor != displacements_.anchors.end() && anchor->particle == i && anchor->surface) anchored.push_back(i);
+    const auto vertex = find_blocked(i);
+    if (vertex != displacements_.blocked.end() && vertex->particle == i && vertex->surface) moved.push_back(i);
   }
-  if (anchored.empty()) return;
-  regions_.renew_around(anchored, {obstacles_, after, after, true});
-  for (const Index i : anchored) {
+  if (moved.empty()) return;
+  regions_.renew_around(moved, {obstacles_, after, after, true});
+  for (const Index i : moved) {
     const auto n = std::lower_bound(constrained_.begin(), constrained_.end(), i) - constrained_.begin();
     if (!regions_.is_crossed(i)) outcomes[static_cast<std::size_t>(n)] = Outcome::stopped;
   }
@@ -121,15 +114,14 @@ Outcomes PairTruncation::of_movable(const Outcomes& of_constrained) const {
 }
 
 std::vector<Index> PairTruncation::blocked_by_obstacles(const Outcomes& outcomes) const {
-  std::vector<Index> found = find_infeasible(constrained_, outcomes);
-  std::erase_if(found, [&](Index i) { return pairs_.passes(i); });
+  std::vector<Index> found = particles_with(Outcome::infeasible, constrained_, outcomes);
+  std::erase_if(found, [&](Index i) { return pairs_.crosses(i); });
   return found;
 }
 
-std::vector<KinematicAnchor>::iterator PairTruncation::find_anchor(Index particle) {
-  std::vector<KinematicAnchor>& anchors = displacements_.anchors;
-  return std::lower_bound(anchors.begin(), anchors.end(), particle,
-                          [](const KinematicAnchor& a, Index b) { return a.particle < b; });
+std::vector<BlockedVertex>::iterator PairTruncation::find_blocked(Index particle) {
+  std::vector<BlockedVertex>& blocked = displacements_.blocked;
+  return std::lower_bound(blocked.begin(), blocked.end(), particle, [](const BlockedVertex& a, Index b) { return a.particle < b; });
 }
 
 }  // namespace sprung

@@ -19,26 +19,26 @@ class PairTruncation {
   /// pairs. Returns the outcomes of the movable particles. Requires PairSeparation::begin_step() or begin_substep() with the same
   /// `before`.
   ///
-  /// Where the two exclude each other, regions are renewed at `before`, and the infeasible particles become anchors: their motion
-  /// groups move with the obstacle that blocks them. This repeats until no anchor is new. It finds an admissible position for every
-  /// particle that no pin drives if the obstacles are at rest, or a single rigid one moves; mostly if a single one deforms; with
-  /// several moving obstacles if groups are small, that is in small substeps. A particle without one stays with its group, since a
-  /// particle can leave an obstacle again, but a knot in a cloth stays.
+  /// Where the two exclude each other, regions are renewed at `before`, and the infeasible particles become blocked vertices: their
+  /// motion groups move with the obstacle that blocks them. This repeats until no blocked vertex is new. It finds an admissible
+  /// position for every particle that no pin drives if the obstacles are at rest, or a single rigid one moves; mostly if a single
+  /// one deforms; with several moving obstacles if groups are small, that is in small substeps. A particle without one stays with
+  /// its group, since a particle can leave an obstacle again, but a knot in a cloth stays.
   Outcomes clip(const Points& before, Points& after);
 
  private:
   Outcomes clip_constrained(const Points& before, Points& after);
   void clip_before_obstacles(const StepPaths& paths, Points& after);
-  /// Makes infeasible particles anchors. Returns whether there are new anchors or resting ones that move now.
-  bool anchor_infeasible(const Outcomes& outcomes, const Points& before, const Points& after);
-  void accept_anchored(const Points& after, Outcomes& outcomes);
+  /// Makes infeasible particles blocked vertices. Returns whether any is new, or a resting one moves now.
+  bool block_infeasible(const Outcomes& outcomes, const Points& before, const Points& after);
+  void accept_moved(const Points& after, Outcomes& outcomes);
   void check_unplaced(const Points& after, Outcomes& outcomes);
 
   [[nodiscard]] Outcomes of_movable(const Outcomes& of_constrained) const;
   /// Constrained particles that obstacles block; without those that pins pull through other elements.
   [[nodiscard]] std::vector<Index> blocked_by_obstacles(const Outcomes& outcomes) const;
-  /// The particle's anchor or, if it has none, the first anchor after it.
-  [[nodiscard]] std::vector<KinematicAnchor>::iterator find_anchor(Index particle);
+  /// The particle's blocked vertex or, if it has none, the first one after it.
+  [[nodiscard]] std::vector<BlockedVertex>::iterator find_blocked(Index particle);
 
   const ObstacleFrame& obstacles_;
   ObstacleSafeRegions& regions_;

@@ -1,5 +1,6 @@
 #include "collision/truncation/step_truncation.h"
 
+#include "base/sort_unique.h"
 #include "collision/truncation/obstacle_truncation.h"
 #include "collision/truncation/pair_truncation.h"
 #include "collision/truncation/vertex_truncation.h"
@@ -10,6 +11,8 @@
 namespace sprung {
 
 namespace {
+
+void append(const std::vector<Index>& more, std::vector<Index>& all) { all.insert(all.end(), more.begin(), more.end()); }
 
 bool bodies_collide(const CollisionSurface& surface) { return std::count(surface.others.begin(), surface.others.end(), 1) > 1; }
 
@@ -117,13 +120,10 @@ void StepTruncation::Implementation::separate_pairs(const ObstacleFrame& obstacl
   if (!after.allFinite()) return;
   std::vector<Index> particles = obstacle_truncation.all_movable({obstacles, before, after});
   const Points allowed = after;
-  const auto record_moved = [&] {
-    const std::vector<Index>& moved = pairs->anchored();
-    truncation.moved_with_obstacles.insert(truncation.moved_with_obstacles.end(), moved.begin(), moved.end());
-  };
+  const auto record_moved = [&] { append(pairs->moved_with_obstacle(), truncation.moved_with_obstacles); };
   Outcomes outcomes = PairTruncation(obstacles, regions, *pairs, particles).clip(before, after);
   record_moved();
-  std::vector<Index> infeasible = pairs->passing_fixed();
+  std::vector<Index> infeasible = pairs->crossing_fixed();
   const bool path_checked = obstacle_truncation.check_pins(obstacles, particles, after, outcomes);
   if (!path_checked ||
       (obstacle_truncation.is_kinematic({obstacles, before, allowed}) && count(outcomes, Outcome::infeasible) > 0)) {
@@ -136,8 +136,7 @@ void StepTruncation::Implementation::separate_pairs(const ObstacleFrame& obstacl
       ClippedSubstep clipped{PairTruncation(paths.obstacles, regions, *pairs, particles).clip(paths.from, x),
                              before_obstacles.path_checked};
       record_moved();
-      const std::vector<Index> fixed = pairs->passing_fixed();
-      infeasible.insert(infeasible.end(), fixed.begin(), fixed.end());
+      append(pairs->crossing_fixed(), infeasible);
       clipped.path_checked =
           obstacle_truncation.check_pins(paths.obstacles, particles, x, clipped.outcomes) && clipped.path_checked;
       keep_infeasible(before_obstacles.outcomes, clipped.outcomes);
@@ -145,14 +144,12 @@ void StepTruncation::Implementation::separate_pairs(const ObstacleFrame& obstacl
     });
   }
   truncation.truncated += static_cast<Index>(outcomes.size()) - count(outcomes, Outcome::free);
-  infeasible.insert(infeasible.end(), obstacle_truncation.infeasible().begin(), obstacle_truncation.infeasible().end());
-  for (std::size_t n = 0; n < particles.size(); ++n) {
-    if (outcomes[n] == Outcome::infeasible) infeasible.push_back(particles[n]);
-  }
+  append(obstacle_truncation.infeasible(), infeasible);
+  append(particles_with(Outcome::infeasible, particles, outcomes), infeasible);
   const bool stops = count(outcomes, Outcome::free) < static_cast<Index>(outcomes.size());
   if (stops && !truncation.subdivided) pairs->append_closest_contacts(before, truncation.body_contacts);
-  std::sort(infeasible.begin(), infeasible.end());
-  truncation.infeasible = static_cast<Index>(std::unique(infeasible.begin(), infeasible.end()) - infeasible.begin());
+  sort_unique(infeasible);
+  truncation.infeasible = static_cast<Index>(infeasible.size());
 }
 
 }  // namespace sprung

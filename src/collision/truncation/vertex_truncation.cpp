@@ -30,6 +30,14 @@ Index count(const Outcomes& outcomes, Outcome wanted) {
   return static_cast<Index>(std::count(outcomes.begin(), outcomes.end(), wanted));
 }
 
+std::vector<Index> particles_with(Outcome wanted, const std::vector<Index>& particles, const Outcomes& outcomes) {
+  std::vector<Index> found;
+  for (std::size_t n = 0; n < particles.size(); ++n) {
+    if (outcomes[n] == wanted) found.push_back(particles[n]);
+  }
+  return found;
+}
+
 void keep_infeasible(const Outcomes& before, Outcomes& outcomes) {
   for (std::size_t n = 0; n < before.size(); ++n) {
     if (before[n] == Outcome::infeasible) outcomes[n] = Outcome::infeasible;
@@ -50,7 +58,7 @@ Outcomes VertexTruncation::clip(const std::vector<Index>& particles, const StepP
 Outcome VertexTruncation::clip(Index particle, const StepPaths& paths, Points& positions) const {
   const Vector3 target = paths.to.col(particle);
   auto&& position = positions.col(particle);
-  if (pairs_ != nullptr && pairs_->passes(particle)) {
+  if (pairs_ != nullptr && pairs_->crosses(particle)) {
     position = pairs_->safe_position(particle);
     return Outcome::infeasible;
   }

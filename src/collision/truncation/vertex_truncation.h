@@ -19,6 +19,9 @@ using Outcomes = std::vector<Outcome>;
 
 [[nodiscard]] Index count(const Outcomes& outcomes, Outcome wanted);
 
+/// The particles with this outcome, in their order.
+[[nodiscard]] std::vector<Index> particles_with(Outcome wanted, const std::vector<Index>& particles, const Outcomes& outcomes);
+
 /// Sets those of `outcomes` to infeasible that are infeasible in `before`.
 void keep_infeasible(const Outcomes& before, Outcomes& outcomes);
 

@@ -1,6 +1,7 @@
 #include "dynamics/contact/contact_solver.h"
 
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "dynamics/state/recorded_impulses.h"
 #include "dynamics/state/simulation_state.h"
 
@@ -275,8 +276,7 @@ std::vector<Index> ContactSolver::pushed() const {
   std::vector<Index> pushed;
   for_each_set(sets_,
                [&](const auto& set) { set.for_pushed([&](Index particle, const auto&...) { pushed.push_back(particle); }); });
-  std::sort(pushed.begin(), pushed.end());
-  pushed.erase(std::unique(pushed.begin(), pushed.end()), pushed.end());
+  sort_unique(pushed);
   return pushed;
 }
 

@@ -1,3 +1,4 @@
+#include "base/sort_unique.h"
 #include "dynamics/forces/force_derivatives.h"
 #include "dynamics/integrators/implicit_friction.h"
 #include "dynamics/integrators/implicit_system.h"
@@ -138,8 +139,7 @@ class ImplicitEuler final : public Integrator {
         }
       }
     }
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    sort_unique(pairs);
     if (!coupled_ || coupled_->pairs != pairs) coupled_.emplace(network(), forces, std::move(pairs));
     return *coupled_;
   }

@@ -28,4 +28,18 @@ bool is_rigid(const RigidTransform& pose) {
   return pose.matrix().allFinite() && linear.isUnitary(kRounding) && linear.determinant() > 0.0;
 }
 
+void check_pose(const std::string& key, const RigidTransform& pose, ProblemList& problems) {
+  if (is_rigid(pose)) return;
+  if (!pose.matrix().allFinite()) {
+    problems.add(key, pose.linear().allFinite() ? vector_text(pose.translation()) : "a rotation that is not finite",
+                 "must be finite", "give a position in m and a rotation");
+    return;
+  }
+  const Matrix3 linear = pose.linear();
+  const double off = (linear.transpose() * linear - Matrix3::Identity()).norm();
+  problems.add(key, linear.determinant() < 0.0 ? "a reflection" : "a matrix R with |R^T R - I| = " + format_number(off, 3),
+               "must be a rotation and a translation",
+               "leave out scale, shear and reflection; the normalized quaternion of R gives a rotation");
+}
+
 }  // namespace sprung

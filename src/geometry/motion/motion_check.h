@@ -15,4 +15,7 @@ void check_motion(const std::string& key, const Motion& motion, ProblemList& pro
 /// Whether a pose is finite, and a rotation and a translation but for rounding.
 [[nodiscard]] bool is_rigid(const RigidTransform& pose);
 
+/// Adds the problem of a pose that is not rigid. `key` is that of the pose, such as `pins.hand.pose`.
+void check_pose(const std::string& key, const RigidTransform& pose, ProblemList& problems);
+
 }  // namespace sprung

@@ -56,7 +56,7 @@ TEST(DivisionPlanes, SidesDoNotCrossIfTheirParticlesEndWithinTheirBounds) {
     std::vector<ContactStencil> pairs{step.sides.pair};
     while (planes.constrain(pairs)) {
     }
-    if (!planes.passing().empty()) continue;
+    if (!planes.crossing().empty()) continue;
     crossed += cross_in_between(step.sides.before, step.targets) ? 1 : 0;
     const std::vector<DivisionPlanes::Bound> bounds = planes.bounds(pairs);
     for (int trial = 0; trial < 8; ++trial) {

@@ -317,7 +317,7 @@ TEST(PairSeparation, ParticlesThatPinsDragThroughEachOtherAreReported) {
       ++crossed;
       Index reported = 0;
       for (Index i = 0; i < network.count(); ++i) {
-        reported += !is_fixed(network.motions, i) && separation.passes(i) ? 1 : 0;
+        reported += !is_fixed(network.motions, i) && separation.crosses(i) ? 1 : 0;
       }
       EXPECT_GT(reported, 0) << "seed " << seed << ", step " << step;
     }
@@ -344,7 +344,7 @@ TEST(PairSeparation, PinsThatRotateTogetherAreNotReported) {
   const Points targets = Eigen::AngleAxisd(1.0, Vector3(1.0, 1.0, 1.0).normalized()).toRotationMatrix() * network.positions;
   separation.begin_step(network.positions, targets, contacts);
   separation.constrain(network.positions, targets);
-  EXPECT_TRUE(separation.passing_fixed().empty());
+  EXPECT_TRUE(separation.crossing_fixed().empty());
 }
 
 TEST(PairSeparation, PinsThatPassThroughEachOtherAreReported) {
@@ -356,7 +356,7 @@ TEST(PairSeparation, PinsThatPassThroughEachOtherAreReported) {
   targets.row(1).tail(4).array() -= 0.2;
   separation.begin_step(network.positions, targets, contacts);
   separation.constrain(network.positions, targets);
-  EXPECT_FALSE(separation.passing_fixed().empty());
+  EXPECT_FALSE(separation.crossing_fixed().empty());
 }
 
 TEST(PairSeparation, ElementsAtRestThatPinsPassThroughAreReported) {
@@ -370,7 +370,7 @@ TEST(PairSeparation, ElementsAtRestThatPinsPassThroughAreReported) {
     std::vector<Contact> contacts;
     separation.begin_step(network.positions, targets, contacts);
     separation.constrain(network.positions, targets);
-    return separation.passing_fixed();
+    return separation.crossing_fixed();
   };
   EXPECT_FALSE(reported(ParticleMotion::at_rest).empty());
   EXPECT_TRUE(reported(ParticleMotion::driven).empty()) << "pins drive both as a whole";

@@ -337,10 +337,28 @@ TEST(ObstacleSet, EveryInvalidMaterialMotionAndPoseIsReported) {
   } catch (const InputError& error) {
     for (const Problem& problem : error.problems()) keys.push_back(problem.key);
   }
-  EXPECT_THAT(keys, testing::ElementsAre("obstacles.rough.thickness", "obstacles.rough.friction", "obstacles.rough.restitution",
-                                         "obstacles.slick.place", "obstacles.slick.thickness", "obstacles.slick.static_friction",
-                                         "obstacles.late.shape.radius", "obstacles.late.motion.keyframes[2]",
-                                         "obstacles.late.motion.keyframes[1]", "obstacles.late.motion.spin"));
+  EXPECT_THAT(keys,
+              testing::ElementsAre("obstacles.rough.thickness", "obstacles.rough.friction", "obstacles.rough.restitution",
+                                   "obstacles.slick.rest_pose", "obstacles.slick.thickness", "obstacles.slick.static_friction",
+                                   "obstacles.late.shape.radius", "obstacles.late.motion.keyframes[2]",
+                                   "obstacles.late.motion.keyframes[1]", "obstacles.late.motion.spin"));
+}
+
+// Without this rule a sphere with a scaled pose keeps its radius, and moves otherwise than it is drawn.
+TEST(ObstacleSet, APoseIsARotationAndATranslation) {
+  Obstacle scaled = obstacle("", SphereGeometry{1.0});
+  scaled.rest_pose.linear() *= 2.0;
+  Obstacle reflected = obstacle("mirror", SphereGeometry{1.0});
+  reflected.rest_pose.linear()(1, 1) = -1.0;
+  try {
+    const ObstacleSet obstacles({scaled, reflected});
+    FAIL();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.problems().size(), 2U);
+    EXPECT_EQ(error.problems()[0].key, "obstacles[0].rest_pose");
+    EXPECT_EQ(error.problems()[1].key, "obstacles.mirror.rest_pose");
+    EXPECT_EQ(error.problems()[1].value, "a reflection");
+  }
 }
 
 }  // namespace

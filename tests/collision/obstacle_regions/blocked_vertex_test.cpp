@@ -1,5 +1,5 @@
-// The common motion of anchors.
-#include "collision/obstacle_regions/kinematic_anchor.h"
+// The common motion of blocked.
+#include "collision/obstacle_regions/blocked_vertex.h"
 #include "collision/sample_meshes.h"
 
 #include <gtest/gtest.h>
@@ -24,14 +24,14 @@ MovedTriangle moved_triangle(const AffineTransform& map, Random& random) {
 }
 
 TEST(CommonMotion, OfAnchorsOnARigidObstacleIsTheObstaclesMotion) {
-  const std::vector<KinematicAnchor> anchors{
+  const std::vector<BlockedVertex> blocked{
       {.particle = 0}, {.particle = 1, .obstacle = 0, .motion = kPose}, {.particle = 2, .obstacle = 1}};
-  EXPECT_EQ(common_motion(anchors).matrix(), kPose.matrix());
+  EXPECT_EQ(common_motion(blocked).matrix(), kPose.matrix());
 }
 
 TEST(CommonMotion, OfRestingAnchorsIsTheIdentity) {
-  const std::vector<KinematicAnchor> anchors{{.particle = 0}, {.particle = 1}};
-  EXPECT_EQ(common_motion(anchors).matrix(), AffineTransform::Identity().matrix());
+  const std::vector<BlockedVertex> blocked{{.particle = 0}, {.particle = 1}};
+  EXPECT_EQ(common_motion(blocked).matrix(), AffineTransform::Identity().matrix());
 }
 
 // Two triangles that are not in one plane determine an affine map. The error is rounding, 1e-16, times the squared ratio of the
@@ -41,11 +41,11 @@ TEST(CommonMotion, OfTwoTrianglesOnADeformingSurfaceIsTheirAffineMap) {
   for (int trial = 0; trial < 100; ++trial) {
     AffineTransform map(kPose);
     for (double& entry : map.linear().reshaped()) entry += random.between(-0.1, 0.1);
-    std::vector<KinematicAnchor> anchors;
+    std::vector<BlockedVertex> blocked;
     for (Index k = 0; k < 2; ++k) {
-      anchors.push_back({.particle = k, .obstacle = 0, .motion = kPose, .surface = moved_triangle(map, random)});
+      blocked.push_back({.particle = k, .obstacle = 0, .motion = kPose, .surface = moved_triangle(map, random)});
     }
-    EXPECT_LT((common_motion(anchors).matrix() - map.matrix()).norm(), 1e-9) << "trial " << trial;
+    EXPECT_LT((common_motion(blocked).matrix() - map.matrix()).norm(), 1e-9) << "trial " << trial;
   }
 }
 
@@ -55,8 +55,8 @@ TEST(CommonMotion, OfASingleTriangleMapsTheTriangleExactly) {
   AffineTransform map(kPose);
   map.linear() *= 1.2;
   const MovedTriangle triangle = moved_triangle(map, random);
-  const std::vector<KinematicAnchor> anchors{{.particle = 0, .obstacle = 0, .motion = kPose, .surface = triangle}};
-  const AffineTransform found = common_motion(anchors);
+  const std::vector<BlockedVertex> blocked{{.particle = 0, .obstacle = 0, .motion = kPose, .surface = triangle}};
+  const AffineTransform found = common_motion(blocked);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((found * triangle.before[k] - triangle.after[k]).norm(), 1e-12);
   const Vector3 across = (triangle.before[1] - triangle.before[0]).cross(triangle.before[2] - triangle.before[0]);
   EXPECT_LT((found.linear() * across - kPose.linear() * across).norm(), 1e-12);
@@ -67,9 +67,9 @@ TEST(CommonMotion, NeverTurnsItsGroupInsideOut) {
   Random random(5);
   AffineTransform mirror = AffineTransform::Identity();
   mirror.linear()(0, 0) = -1.0;
-  std::vector<KinematicAnchor> anchors;
-  for (Index k = 0; k < 3; ++k) anchors.push_back({.particle = k, .obstacle = 0, .surface = moved_triangle(mirror, random)});
-  EXPECT_GT(common_motion(anchors).linear().determinant(), 0.0);
+  std::vector<BlockedVertex> blocked;
+  for (Index k = 0; k < 3; ++k) blocked.push_back({.particle = k, .obstacle = 0, .surface = moved_triangle(mirror, random)});
+  EXPECT_GT(common_motion(blocked).linear().determinant(), 0.0);
 }
 
 }  // namespace

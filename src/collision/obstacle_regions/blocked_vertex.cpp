@@ -1,4 +1,4 @@
-#include "collision/obstacle_regions/kinematic_anchor.h"
+#include "collision/obstacle_regions/blocked_vertex.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -56,12 +56,12 @@ AffineTransform fit(const RigidTransform& rigid, const std::vector<MovedTriangle
 
 }  // namespace
 
-AffineTransform common_motion(std::span<const KinematicAnchor> anchors) {
-  const auto moving = std::find_if(anchors.begin(), anchors.end(), [](const KinematicAnchor& anchor) { return anchor.moves(); });
-  const KinematicAnchor& first = moving == anchors.end() ? anchors.front() : *moving;
+AffineTransform common_motion(std::span<const BlockedVertex> blocked) {
+  const auto moving = std::find_if(blocked.begin(), blocked.end(), [](const BlockedVertex& vertex) { return vertex.moves(); });
+  const BlockedVertex& first = moving == blocked.end() ? blocked.front() : *moving;
   std::vector<MovedTriangle> triangles;
-  for (const KinematicAnchor& anchor : anchors) {
-    if (anchor.surface && anchor.obstacle == first.obstacle) triangles.push_back(*anchor.surface);
+  for (const BlockedVertex& vertex : blocked) {
+    if (vertex.surface && vertex.obstacle == first.obstacle) triangles.push_back(*vertex.surface);
   }
   return triangles.empty() ? AffineTransform(first.motion) : fit(first.motion, triangles);
 }
