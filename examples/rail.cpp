@@ -12,7 +12,8 @@ class Rail final : public sprung::Constraint {
   Rail(sprung::Index particle, const sprung::Vector3& point, const sprung::Vector3& direction)
       : particle_(particle), point_(point), direction_(direction) {}
 
-  double project(const sprung::Points& /*before*/, sprung::Points& positions) const override {
+  double project(const sprung::Points& /*before*/, sprung::Points& positions,
+                 const sprung::ImpulseRecorder& /*recorder*/) const override {
     const sprung::Vector3 off = offset(positions);
     positions.col(particle_) -= off;  // the wire has no mass that could give way
     return off.norm() / kTolerance;

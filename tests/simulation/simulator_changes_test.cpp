@@ -522,7 +522,7 @@ TEST(SimulatorChanges, ElementsThatAreNotFiniteOrOnNoParticleAreRefused) {
 class Shelf final : public Constraint {
  public:
   explicit Shelf(double height) : height_(height) {}
-  double project(const Points& /*before*/, Points& positions) const override {
+  double project(const Points& /*before*/, Points& positions, const ImpulseRecorder& /*recorder*/) const override {
     const double off = residual(positions);
     positions(1, 0) = height_;
     return off;

@@ -657,7 +657,7 @@ TEST(Steering, SubstepsMoveOnTheSameLine) {
 /// Spoils positions when it is told to.
 class Spoiler : public Constraint {
  public:
-  double project(const Points& /*before*/, Points& positions) const override {
+  double project(const Points& /*before*/, Points& positions, const ImpulseRecorder& /*recorder*/) const override {
     if (spoils) positions(0, 5) = kNotANumber;
     return 0.0;
   }

@@ -73,19 +73,20 @@ void Rods::prepare(double time) {
   pushes_.assign(rods_.size(), Vector3::Zero());
 }
 
-double Rods::project(const Points& before, Points& positions) const {
+double Rods::project(const Points& before, Points& positions, const ImpulseRecorder& recorder) const {
   std::vector<double> violations(rods_.size(), 0.0);
   for (std::size_t c = 0; c + 1 < colouring_.colour_begin.size(); ++c) {
     const std::size_t first = colouring_.colour_begin[c];
     parallel_chunks(static_cast<Index>(colouring_.colour_begin[c + 1] - first), kRodsPerChunk, [&](Index begin, Index end) {
-      for (std::size_t k = first + begin; k < first + end; ++k) violations[k] = project(colouring_.order[k], before, positions);
+      for (std::size_t k = first + begin; k < first + end; ++k)
+        violations[k] = project(colouring_.order[k], before, positions, recorder);
     });
   }
   return violations.empty() ? 0.0 : std::ranges::max(violations);
 }
 
 /// Returns the violation before.
-double Rods::project(std::size_t number, const Points& before, Points& positions) const {
+double Rods::project(std::size_t number, const Points& before, Points& positions, const ImpulseRecorder& recorder) const {
   const Rod& rod = rods_[number];
   if (rod.inverse_mass == 0.0) return 0.0;
   const Vector3 difference = rod.ends.sum(positions) - rod.anchor;
@@ -93,7 +94,7 @@ double Rods::project(std::size_t number, const Points& before, Points& positions
   for (std::size_t k = 0; k < rod.ends.particles().size(); ++k) {
     const Index particle = rod.ends.particles()[k];
     positions.col(particle) += rod.ends.weight(k) * network_.inverse_masses[particle] * push;
-    if (recorder().on() && network_.is_fixed(particle)) recorder().add_to_pinned(particle, rod.ends.weight(k) * push);
+    if (recorder.on() && network_.is_fixed(particle)) recorder.add_to_pinned(particle, rod.ends.weight(k) * push);
   }
   pushes_[number] += push;
   return violation(rod, difference);

@@ -29,7 +29,7 @@ class Rods final : public Constraint {
   void load(const std::vector<Link>& links, double time);
 
   void prepare(double time) override;
-  double project(const Points& before, Points& positions) const override;
+  double project(const Points& before, Points& positions, const ImpulseRecorder& recorder) const override;
 
   /// A length may be off by 0.05 %; that of a rod of length 0 by 0.05 % of the mean spring length.
   [[nodiscard]] double residual(const Points& positions) const override;
@@ -53,7 +53,7 @@ class Rods final : public Constraint {
     Vector3 anchor = Vector3::Zero();  ///< now [m]
     double tolerance = 0.0;            ///< [m]
   };
-  double project(std::size_t number, const Points& before, Points& positions) const;
+  double project(std::size_t number, const Points& before, Points& positions, const ImpulseRecorder& recorder) const;
   [[nodiscard]] static double violation(const Rod& rod, const Vector3& difference);
 
   const SpringNetwork& network_;

@@ -38,7 +38,7 @@ CarriedSurface::CarriedSurface(const SpringNetwork& network) : network_(network)
   cell_begin_.push_back(vertices_.size());
 }
 
-double CarriedSurface::project(const Points& /*before*/, Points& positions) const {
+double CarriedSurface::project(const Points& /*before*/, Points& positions, const ImpulseRecorder& recorder) const {
   std::vector<double> residuals(cells_.order.size(), 0.0);
   for (std::size_t c = 0; c + 1 < cells_.colour_begin.size(); ++c) {
     const std::size_t first = cells_.colour_begin[c];
@@ -46,7 +46,7 @@ double CarriedSurface::project(const Points& /*before*/, Points& positions) cons
       for (std::size_t k = first + begin; k < first + end; ++k) {
         const std::size_t cell = cells_.order[k];
         for (std::size_t v = cell_begin_[cell]; v < cell_begin_[cell + 1]; ++v) {
-          residuals[k] = std::max(residuals[k], project(vertices_[v], positions));
+          residuals[k] = std::max(residuals[k], project(vertices_[v], positions, recorder));
         }
       }
     });
@@ -54,7 +54,7 @@ double CarriedSurface::project(const Points& /*before*/, Points& positions) cons
   return residuals.empty() ? 0.0 : std::ranges::max(residuals);
 }
 
-double CarriedSurface::project(const Vertex& vertex, Points& positions) const {
+double CarriedSurface::project(const Vertex& vertex, Points& positions, const ImpulseRecorder& recorder) const {
   const Scalars& inverse_masses = network_.inverse_masses;
   const Vector3 off = positions.col(vertex.particle) - carried_position(vertex.point, positions);
   double sum = inverse_masses[vertex.particle];
@@ -66,17 +66,17 @@ double CarriedSurface::project(const Vertex& vertex, Points& positions) const {
     for (std::size_t c = 0; c < vertex.point.corners.size(); ++c) {
       positions.col(vertex.point.corners[c]) += vertex.point.weights[c] * inverse_masses[vertex.point.corners[c]] / sum * off;
     }
-    if (recorder().on()) record_pinned(vertex, off / sum);
+    if (recorder.on()) record_pinned(vertex, off / sum, recorder);
   }
   return off.norm() / vertex.tolerance;
 }
 
 /// `multiplier` [kg m] is the momentum that the projection gives to the corners, minus that of the particle.
-void CarriedSurface::record_pinned(const Vertex& vertex, const Vector3& multiplier) const {
-  if (network_.is_fixed(vertex.particle)) recorder().add_to_pinned(vertex.particle, -multiplier);
+void CarriedSurface::record_pinned(const Vertex& vertex, const Vector3& multiplier, const ImpulseRecorder& recorder) const {
+  if (network_.is_fixed(vertex.particle)) recorder.add_to_pinned(vertex.particle, -multiplier);
   for (std::size_t c = 0; c < vertex.point.corners.size(); ++c) {
     const Index corner = vertex.point.corners[c];
-    if (network_.is_fixed(corner)) recorder().add_to_pinned(corner, vertex.point.weights[c] * multiplier);
+    if (network_.is_fixed(corner)) recorder.add_to_pinned(corner, vertex.point.weights[c] * multiplier);
   }
 }
 

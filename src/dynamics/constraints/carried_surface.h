@@ -16,7 +16,7 @@ class CarriedSurface final : public Constraint {
   /// Keeps a reference to the network.
   explicit CarriedSurface(const SpringNetwork& network);
 
-  double project(const Points& before, Points& positions) const override;
+  double project(const Points& before, Points& positions, const ImpulseRecorder& recorder) const override;
 
   /// A particle may be off by a thousandth of its cell.
   [[nodiscard]] double residual(const Points& positions) const override;
@@ -27,8 +27,8 @@ class CarriedSurface final : public Constraint {
     CellPoint point;   ///< in the numbering of the network
     double tolerance;  ///< [m]
   };
-  double project(const Vertex& vertex, Points& positions) const;
-  void record_pinned(const Vertex& vertex, const Vector3& multiplier) const;
+  double project(const Vertex& vertex, Points& positions, const ImpulseRecorder& recorder) const;
+  void record_pinned(const Vertex& vertex, const Vector3& multiplier, const ImpulseRecorder& recorder) const;
 
   const SpringNetwork& network_;
   std::vector<Vertex> vertices_;         ///< those in one cell follow each other

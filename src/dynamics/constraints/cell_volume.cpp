@@ -177,16 +177,17 @@ CellVolume::Region CellVolume::region(std::size_t number) const {
       .volume = volumes_[number]};
 }
 
-double CellVolume::project(const Points& /*before*/, Points& positions) const {
+double CellVolume::project(const Points& /*before*/, Points& positions, const ImpulseRecorder& recorder) const {
   std::vector<double> changes(groups_.size() + singles_.size());
   for (std::size_t c = 0; c + 1 < groups_begin_.size(); ++c) {
     const std::size_t first_group = groups_begin_[c];
-    parallel_chunks(static_cast<Index>(groups_begin_[c + 1] - first_group), kGroupsPerChunk,
-                    [&](Index begin, Index end) { project_groups(first_group + begin, first_group + end, positions, changes); });
+    parallel_chunks(static_cast<Index>(groups_begin_[c + 1] - first_group), kGroupsPerChunk, [&](Index begin, Index end) {
+      project_groups(first_group + begin, first_group + end, positions, changes, recorder);
+    });
     const std::size_t first = singles_begin_[c];
     parallel_chunks(static_cast<Index>(singles_begin_[c + 1] - first), kRegionsPerChunk, [&](Index begin, Index end) {
       for (std::size_t k = first + begin; k < first + end; ++k) {
-        changes[groups_.size() + k] = project(region(singles_[k]), positions);
+        changes[groups_.size() + k] = project(region(singles_[k]), positions, recorder);
       }
     });
   }
@@ -195,14 +196,15 @@ double CellVolume::project(const Points& /*before*/, Points& positions) const {
 
 /// Writes the largest relative change of volume in each group. A chunk with pinned particles whose impulses are recorded is
 /// projected cell by cell, which gives the same bits.
-void CellVolume::project_groups(std::size_t begin, std::size_t end, Points& positions, std::vector<double>& changes) const {
+void CellVolume::project_groups(std::size_t begin, std::size_t end, Points& positions, std::vector<double>& changes,
+                                const ImpulseRecorder& recorder) const {
   std::array<HexahedraFound, kGroupsPerChunk> found;
   const auto groups = std::span(groups_).subspan(begin, end - begin);
-  if (recorder().on() && std::ranges::any_of(groups, [&](const HexahedronGroup& group) { return has_pinned(group); })) {
+  if (recorder.on() && std::ranges::any_of(groups, [&](const HexahedronGroup& group) { return has_pinned(group); })) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       changes[begin + g] = 0.0;
       for (const std::size_t number : groups[g].number) {
-        changes[begin + g] = std::max(changes[begin + g], project(region(number), positions));
+        changes[begin + g] = std::max(changes[begin + g], project(region(number), positions, recorder));
       }
     }
     return;
@@ -211,7 +213,7 @@ void CellVolume::project_groups(std::size_t begin, std::size_t end, Points& posi
   for (std::size_t g = 0; g < groups.size(); ++g) {
     changes[begin + g] = largest_change(groups[g], found[g].volumes);
     for (std::size_t lane = 0; lane < kHexahedraPerGroup; ++lane) {
-      if (found[g].slack[lane] < 0.0) project_parts(region(groups[g].number[lane]), positions);
+      if (found[g].slack[lane] < 0.0) project_parts(region(groups[g].number[lane]), positions, recorder);
     }
   }
 }
@@ -251,7 +253,7 @@ double CellVolume::change(const Region& region, const Points& positions) {
 bool CellVolume::is_inverted(const Part& part, double volume) { return volume <= 0.0 && part.least > 0.0; }
 
 /// Returns the relative change of volume before.
-double CellVolume::project(const Region& region, Points& positions) const {
+double CellVolume::project(const Region& region, Points& positions, const ImpulseRecorder& recorder) const {
   std::array<Vector3, kMaxParticles> gradients;
   std::fill_n(gradients.begin(), region.particles.size(), Vector3::Zero());
   double volume = 0.0;
@@ -264,18 +266,18 @@ double CellVolume::project(const Region& region, Points& positions) const {
     flat = flat || of_part.volume < kWatched * part.least;
     inverted = inverted || is_inverted(part, of_part.volume);
   }
-  change_volume(region.volume - volume, region.particles, gradients, network_.inverse_masses, recorder(), positions);
-  if (flat) project_parts(region, positions);
+  change_volume(region.volume - volume, region.particles, gradients, network_.inverse_masses, recorder, positions);
+  if (flat) project_parts(region, positions, recorder);
   return std::max(std::abs(volume / region.volume - 1.0), inverted ? kInverted : 0.0);
 }
 
-void CellVolume::project_parts(const Region& region, Points& positions) const {
+void CellVolume::project_parts(const Region& region, Points& positions, const ImpulseRecorder& recorder) const {
   for (const Part& part : region.parts) {
     const PartVolume of_part = part_volume(region.particles, part.corners, positions);
     if (of_part.volume >= part.least) continue;
     const std::array<Index, 4> particles{region.particles[part.corners[0]], region.particles[part.corners[1]],
                                          region.particles[part.corners[2]], region.particles[part.corners[3]]};
-    change_volume(part.least - of_part.volume, particles, of_part.gradients, network_.inverse_masses, recorder(), positions);
+    change_volume(part.least - of_part.volume, particles, of_part.gradients, network_.inverse_masses, recorder, positions);
   }
 }
 

@@ -22,7 +22,7 @@ class CellVolume final : public Constraint {
   /// reference to the network.
   explicit CellVolume(const SpringNetwork& network);
 
-  double project(const Points& before, Points& positions) const override;
+  double project(const Points& before, Points& positions, const ImpulseRecorder& recorder) const override;
 
   /// A volume may differ by 1 % from that at rest, and nothing may be inside out, which counts as 100.
   [[nodiscard]] double residual(const Points& positions) const override;
@@ -51,11 +51,12 @@ class CellVolume final : public Constraint {
   [[nodiscard]] static bool is_inverted(const Part& part, double volume);
   void make_groups(const Colouring& colouring, std::size_t hexahedra);
   [[nodiscard]] HexahedronGroup group_of(const std::vector<std::size_t>& hexahedra) const;
-  void project_groups(std::size_t begin, std::size_t end, Points& positions, std::vector<double>& changes) const;
+  void project_groups(std::size_t begin, std::size_t end, Points& positions, std::vector<double>& changes,
+                      const ImpulseRecorder& recorder) const;
   [[nodiscard]] bool has_pinned(const HexahedronGroup& group) const;
-  double project(const Region& region, Points& positions) const;
+  double project(const Region& region, Points& positions, const ImpulseRecorder& recorder) const;
   [[nodiscard]] static double change(const Region& region, const Points& positions);
-  void project_parts(const Region& region, Points& positions) const;
+  void project_parts(const Region& region, Points& positions, const ImpulseRecorder& recorder) const;
 
   const SpringNetwork& network_;
 

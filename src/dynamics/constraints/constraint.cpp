@@ -8,9 +8,9 @@ void Constraint::prepare(double /*time*/) {}
 
 std::optional<std::vector<Index>> Constraint::touched() const { return std::nullopt; }
 
-double project(const Constraints& constraints, const Points& before, Points& positions) {
+double project(const Constraints& constraints, const Points& before, Points& positions, const ImpulseRecorder& recorder) {
   double largest = 0.0;
-  for (const auto& constraint : constraints) largest = std::max(largest, constraint->project(before, positions));
+  for (const auto& constraint : constraints) largest = std::max(largest, constraint->project(before, positions, recorder));
   return largest;
 }
 

@@ -26,7 +26,7 @@ EnclosedVolume::EnclosedVolume(const SpringNetwork& network) : network_(network)
   }
 }
 
-double EnclosedVolume::project(const Points& before, Points& positions) const {
+double EnclosedVolume::project(const Points& before, Points& positions, const ImpulseRecorder& recorder) const {
   double largest = 0.0;
   for (const Kept& kept : kept_) {
     const Body& body = network_.bodies[kept.body];
@@ -44,9 +44,9 @@ double EnclosedVolume::project(const Points& before, Points& positions) const {
     }
     positions.middleCols(body.first_particle, body.particle_count) +=
         (missing / along) * (directions.array().rowwise() * inverse_masses.array()).matrix();
-    for (Index i = 0; recorder().on() && i < body.particle_count; ++i) {
+    for (Index i = 0; recorder.on() && i < body.particle_count; ++i) {
       const Index particle = body.first_particle + i;
-      if (network_.is_fixed(particle)) recorder().add_to_pinned(particle, missing / along * directions.col(i));
+      if (network_.is_fixed(particle)) recorder.add_to_pinned(particle, missing / along * directions.col(i));
     }
   }
   return largest / kTolerance;

@@ -17,7 +17,7 @@ class EnclosedVolume final : public Constraint {
   /// network.
   explicit EnclosedVolume(const SpringNetwork& network);
 
-  double project(const Points& before, Points& positions) const override;
+  double project(const Points& before, Points& positions, const ImpulseRecorder& recorder) const override;
 
   /// A volume may differ by 0.1 % from what it is kept at.
   [[nodiscard]] double residual(const Points& positions) const override;

@@ -68,16 +68,16 @@ void StepConstraints::apply(const ObstacleFrame& frame, SimulationState& state, 
   for (const auto& constraint : constraints_) constraint->prepare(frame.end());
   if (contacts_.can_collide() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
-  record(ImpulseRecorder(state.impulses, dt));
+  recorder_ = ImpulseRecorder(state.impulses, dt);
   project(frame, state, forces, report);
   report.stretch_excess = limit_ ? limit_->excess(state.x) : 0.0;
   truncate(frame, state, forces, report);
-  record({});
+  recorder_ = {};
 }
 
 void StepConstraints::correct_positions(const ObstacleFrame& frame, SimulationState& state, double dt) {
   dt_ = dt;
-  record({});  // velocities stay as they are
+  recorder_ = {};  // velocities stay as they are
   const auto excess = [&](const Points& x) { return limit_ ? limit_->excess(x) : 0.0; };
   for (int k = 0; k < kCorrections && (excess(state.x) > kCorrected || violation(state.x) > 1.0); ++k) {
     begin(state);
@@ -90,7 +90,7 @@ void StepConstraints::correct_positions(const ObstacleFrame& frame, SimulationSt
     const int passes = std::max(limit_ ? limit_->settings().iterations : 0, constraint_passes());
     repeat_until_settled(passes, [&](int /*pass*/) {
       if (projects_contacts()) contacts_.project(state.x);
-      const double violation_before = sprung::project(constraints_, start, state.x);
+      const double violation_before = sprung::project(constraints_, start, state.x, recorder_);
       const double excess_before = limit_ ? limit_->project(start, state.x) : 0.0;
       return excess_before <= kCorrected && violation_before <= 1.0;
     });
@@ -136,7 +136,7 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   report.iterations += repeat_until_settled(max_passes, [&](int pass) {
     const bool between = pass > 0 && pass + 1 < passes;
     const double push = projects ? contacts_.project(state.x) : 0.0;
-    const double violation = sprung::project(constraints_, positions_before(state), state.x);
+    const double violation = sprung::project(constraints_, positions_before(state), state.x, recorder_);
     double excess = 0.0;
     if (limit_) {
       excess = solves && pass == 0 ? limit_->excess(state.x)
@@ -208,7 +208,7 @@ bool StepConstraints::relax(const ObstacleFrame& frame, Points& positions, doubl
   if (projects_contacts()) contacts_.find_again(frame, motion(), positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     if (projects_contacts()) contacts_.project(positions);
-    sprung::project(constraints_, before_, positions);
+    sprung::project(constraints_, before_, positions, recorder_);
     if (limit_) limit_->project(before_, positions, 1.0, recorder_);
   }
   return true;
@@ -224,11 +224,6 @@ bool StepConstraints::respond_to_truncation(SimulationState& state, const Forces
   integrator_.respond_to_contact(motion(), forces, responded_, constrained_, state);
   responded_ = state.x;
   return true;
-}
-
-void StepConstraints::record(const ImpulseRecorder& recorder) {
-  recorder_ = recorder;
-  for (const auto& constraint : constraints_) constraint->record(recorder);
 }
 
 bool StepConstraints::projects_contacts() const {

@@ -7,7 +7,7 @@
 #include "dynamics/integrators/integrator.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
 #include "simulation/settings/simulator_settings.h"
-#include "simulation/step/step_plan.h"
+#include "simulation/step/step_planner.h"
 
 #include <optional>
 
@@ -75,7 +75,6 @@ class StepConstraints {
   [[nodiscard]] int constraint_passes() const;
   [[nodiscard]] bool relax(const ObstacleFrame& frame, Points& positions, double excess_before, double violation_before);
   [[nodiscard]] bool respond_to_truncation(SimulationState& state, const Forces& forces);
-  void record(const ImpulseRecorder& recorder);
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts_.can_collide() || !integrator_.keeps_positions(); }
   [[nodiscard]] StepMotion motion() const { return {before_, v_before_, slip_before_, advanced_, dt_}; }
@@ -96,7 +95,7 @@ class StepConstraints {
   ConstrainedDirections constrained_;  ///< of the last call of Integrator::respond_to_contact
   Points responded_;                   ///< positions after that call
   double dt_ = 0.0;
-  ImpulseRecorder recorder_;
+  ImpulseRecorder recorder_;  ///< off between steps
   bool global_limit_ = true;  ///< see StepPlan
 };
 

@@ -70,7 +70,7 @@ TEST_F(RandomLinks, APassMovesNoCentreOfMassAndGivesTheSameBitsForAnyNumberOfThr
   const Points start = state.x + 0.01 * network.velocities;
   testing::expect_same_bits(*attachments.rods(), start);
   Points after = start;
-  EXPECT_GT(attachments.rods()->project(state.x, after), 1.0);
+  EXPECT_GT(attachments.rods()->project(state.x, after, {}), 1.0);
   // A thousand particles of 1 kg that move by up to 1 cm, each rounded to 1e-16 m.
   EXPECT_LE(((after - start) * network.masses).norm(), 1e-12);
   // The displacements are along the lines between the ends before, so that they have no moment.
@@ -90,7 +90,7 @@ TEST_F(RandomLinks, OnePassRestoresARodOnItsOwn) {
     const SimulationState state = engaged(network, attachments);
     // Up to a half turn and more: then it moves along the present line between the ends.
     Points after = state.x + 0.1 * (1 + trial % 30) * network.velocities;
-    (void)attachments.rods()->project(state.x, after);
+    (void)attachments.rods()->project(state.x, after, {});
     EXPECT_LE(attachments.rods()->residual(after), 1e-9) << trial;
   }
 }

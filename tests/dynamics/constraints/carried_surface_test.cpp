@@ -49,7 +49,7 @@ TEST(CarriedSurface, PassesBringPushedVerticesBackAndConserveMomentum) {
   const Vector3 center = positions * network.masses;
   const Vector3 at_rest = network.positions * network.masses;
   const double before = surface.residual(positions);
-  for (int pass = 0; pass < 100 && surface.residual(positions) > 1.0; ++pass) surface.project(network.positions, positions);
+  for (int pass = 0; pass < 100 && surface.residual(positions) > 1.0; ++pass) surface.project(network.positions, positions, {});
   EXPECT_GT(before, 10.0);
   EXPECT_LE(surface.residual(positions), 1.0);
   EXPECT_LT((positions * network.masses - center).norm(), 1.0e-14);

@@ -37,7 +37,7 @@ TEST(EnclosedVolume, PassesReachTheFactorAndConserveMomentum) {
   Points positions = network.positions;
   EXPECT_NEAR(volume.residual(positions), 0.5 / 1.5 / 1.0e-3, 1.0e-6);
   // Newton's method on one equation: the error of 1/3 falls below 1e-3 in four passes.
-  for (int pass = 0; pass < 4; ++pass) volume.project(network.positions, positions);
+  for (int pass = 0; pass < 4; ++pass) volume.project(network.positions, positions, {});
   EXPECT_LE(volume.residual(positions), 1.0);
   EXPECT_NEAR(volume_of_bag(network, positions), 1.5, 1.5e-3);
   EXPECT_LT(((positions - network.positions) * network.masses).norm(), 1.0e-14);
@@ -56,7 +56,7 @@ TEST(EnclosedVolume, SeveralBagsKeepTheirOwnAndPinnedParticlesStay) {
   const SpringNetwork network = builder.build();
   const EnclosedVolume volume(network);
   Points positions = network.positions;
-  for (int pass = 0; pass < 10; ++pass) volume.project(network.positions, positions);
+  for (int pass = 0; pass < 10; ++pass) volume.project(network.positions, positions, {});
   const auto volume_of = [&](Index body) {
     return signed_volume(positions.middleCols(8 * body, 8), network.bodies[body].surface.triangles);
   };

@@ -14,10 +14,10 @@ inline void expect_same_bits(const Constraint& constraint, const Points& start) 
   Points together = start;
   {
     const ThreadLimit one(1);
-    constraint.project(start, alone);
+    constraint.project(start, alone, {});
   }
   const ThreadLimit four(4);
-  constraint.project(start, together);
+  constraint.project(start, together, {});
   EXPECT_NE(alone, start);
   EXPECT_EQ(alone, together);
 }

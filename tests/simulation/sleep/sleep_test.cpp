@@ -448,7 +448,9 @@ TEST(RestDetector, AnExternalForceWakesItAndKeepsItAwake) {
 /// A condition that always holds.
 class Nothing final : public Constraint {
  public:
-  double project(const Points& /*before*/, Points& /*positions*/) const override { return 0.0; }
+  double project(const Points& /*before*/, Points& /*positions*/, const ImpulseRecorder& /*recorder*/) const override {
+    return 0.0;
+  }
   [[nodiscard]] double residual(const Points& /*positions*/) const override { return 0.0; }
 };
 
