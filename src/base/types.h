@@ -30,7 +30,7 @@ using Edges = Eigen::Matrix<Index, 2, Eigen::Dynamic>;
 /// Axis-aligned box; empty when default constructed.
 using Box3 = Eigen::AlignedBox3d;
 
-/// Rotation and translation, x -> R x + t, without scale.
+/// Rotation and translation, x -> R x + t, without scale. A default one is uninitialized: begin with RigidTransform::Identity().
 using RigidTransform = Eigen::Isometry3d;
 
 }  // namespace sprung

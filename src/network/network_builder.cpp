@@ -237,9 +237,7 @@ SpringNetwork NetworkBuilder::build() const {
   }
   network.inverse_masses = network.masses.cwiseInverse();
   network.pins = std::move(pins);
-  Activity activity = all_free(network);
-  change_pins(network.pins, std::numeric_limits<double>::min(), activity);  // those that begin at time 0
-  set_activity(std::move(activity), network);
+  set_activity(first_activity(network), network);
   for (Index i = 0; i < network.particle_count(); ++i) {
     if (network.activity.is_pinned(i)) network.velocities.col(i).setZero();
   }

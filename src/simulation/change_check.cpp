@@ -6,6 +6,7 @@
 #include "network/network_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sprung {
@@ -70,6 +71,31 @@ double largest_size(const SpringNetwork& network) {
   return largest;
 }
 
+std::string key_of(const Force& force) { return "added force \"" + force.name() + "\""; }
+std::string key_of(const Constraint& /*constraint*/) { return "added constraint"; }
+
+template <class Added>
+void require_new(const std::string& key, const std::shared_ptr<Added>& added, const std::vector<std::shared_ptr<Added>>& others) {
+  if (added == nullptr)
+    throw InputError({.key = key, .value = "null", .rule = "must be an object", .remedy = "make one with std::make_shared"});
+  if (std::ranges::find(others, added) == others.end()) return;
+  throw InputError({.key = key_of(*added), .rule = "was added already", .remedy = "change its parameters, or make another object"});
+}
+
+void require_particles(const std::string& key, const std::vector<Index>& particles, const SpringNetwork& network,
+                       ProblemList& problems) {
+  problems.require_each(
+      particles.size(), [&](std::size_t k) { return particles[k] >= 0 && particles[k] < network.particle_count(); },
+      [&](std::size_t k) { return std::to_string(particles[k]); },
+      {key, "must be the number of a particle; there are " + std::to_string(network.particle_count()), "count particles from 0"});
+}
+
+void require_particles(const std::string& key, const std::vector<Index>& particles, const SpringNetwork& network) {
+  ProblemList problems;
+  require_particles(key, particles, network, problems);
+  problems.throw_if_any();
+}
+
 }  // namespace
 
 void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const Model& before,
@@ -79,7 +105,7 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   if (!have_same_bodies(network, before.network())) {
     problems.add("bodies", "", "must have the same names and particles as before, as the run goes on", restart);
   } else if (!collide_alike(network, before.network())) {
-    problems.add("contact", "", "must be asked for between the same bodies as before, as the run goes on", restart);
+    problems.add("contact", "", "must be enabled for the same bodies as before, as the run goes on", restart);
   }
   check_ends(network, state.steering.added_pins, problems);
   check_step_change(settings, before.settings(), state, problems);
@@ -89,10 +115,13 @@ void check_change(const SpringNetwork& network, const SimulatorSettings& setting
   problems.throw_if_any();
 }
 
-void check_entry(const std::string& key, std::size_t number, std::size_t count) {
-  if (number < count) return;
-  throw InputError(
-      {.key = key, .value = std::to_string(number), .rule = "there are only " + std::to_string(count), .remedy = "count from 0"});
+void check_entry(const std::string& key, const std::string& what, std::int64_t number, std::int64_t count) {
+  if (number >= 0 && number < count) return;
+  const std::string there = count == 0 ? "are none" : (count == 1 ? "is 1" : "are " + std::to_string(count));
+  throw InputError({.key = key,
+                    .value = std::to_string(number),
+                    .rule = "must be the number of " + what + "; there " + there,
+                    .remedy = "count " + key + " from 0"});
 }
 
 void check_number(const std::string& key, double number, ProblemList& problems) {
@@ -100,45 +129,15 @@ void check_number(const std::string& key, double number, ProblemList& problems) 
   problems.add(key, format_number(number, 6), "must be finite and not negative", "give 0 for none");
 }
 
-void check_elements(const Force& force, const std::vector<LinearElement>& elements, Index particle_count) {
+void check_move(const std::string& key, const RigidTransform& from, const RigidTransform& to, double reach,
+                const SpringNetwork& network) {
   ProblemList problems;
-  const auto is_good = [&](std::size_t k) {
-    const LinearElement& element = elements[k];
-    if (element.count > element.particles.size()) return false;
-    for (std::size_t i = 0; i < element.count; ++i) {
-      const Index particle = element.particles[i];
-      if (particle < 0 || particle >= particle_count || !std::isfinite(element.weights[i])) return false;
-    }
-    return std::isfinite(element.stiffness) && std::isfinite(element.damping);
-  };
-  problems.require_each(elements.size(), is_good, [](std::size_t /*element*/) { return std::string(); },
-                        {force.name() + ".elements", "must be on particles that exist, with finite weights, stiffness and damping",
-                         "correct append_elements of the force"});
+  check_pose(key, to, problems);
   problems.throw_if_any();
-}
-
-void check_pose(const std::string& key, const RigidTransform& pose) {
-  if (is_rigid(pose)) return;
-  if (!pose.matrix().allFinite()) {
-    throw InputError({.key = key,
-                      .value = pose.linear().allFinite() ? vector_text(pose.translation()) : "a rotation that is not finite",
-                      .rule = "must be finite",
-                      .remedy = "give a position in m and a rotation"});
-  }
-  const Matrix3 linear = pose.linear();
-  const double off = (linear.transpose() * linear - Matrix3::Identity()).norm();
-  throw InputError({.key = key,
-                    .value = linear.determinant() < 0.0 ? "a reflection" : "a matrix R with |R^T R - I| = " + format_number(off, 3),
-                    .rule = "must be a rotation and a translation",
-                    .remedy = "leave out scale, shear and reflection; the normalized quaternion of R gives a rotation"});
-}
-
-void check_travel(const std::string& key, const RigidTransform& from, const RigidTransform& to, double reach,
-                  const SpringNetwork& network) {
   const double distance = travel(from, to, reach);
   constexpr double kRounding = 1.0e-9;
   const double most = largest_size(network);
-  if (most == 0.0 || distance <= (1.0 + kRounding) * most) return;  // without springs nothing is stretched
+  if (most == 0.0 || distance <= (1.0 + kRounding) * most) return;  // bodies without extent cannot be stretched
   throw InputError({.key = key,
                     .value = format_number(distance, 6) + " m from the present pose",
                     .rule = "must be at most " + format_number(most, 6) + " m away in one step, the size of the largest body",
@@ -146,11 +145,44 @@ void check_travel(const std::string& key, const RigidTransform& from, const Rigi
 }
 
 void check_particle(const SpringNetwork& network, Index particle) {
-  if (particle >= 0 && particle < network.particle_count()) return;
-  throw InputError({.key = "particle",
-                    .value = std::to_string(particle),
-                    .rule = "must be the number of a particle; there are " + std::to_string(network.particle_count()),
-                    .remedy = "count particles from 0"});
+  check_entry("particles", "a particle", particle, network.particle_count());
+}
+
+void check_added(const std::shared_ptr<Force>& force, const Control& control, const SpringNetwork& network) {
+  require_new("added force", force, control.forces);
+  std::vector<LinearElement> elements;
+  force->append_elements(elements);
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const LinearElement& element = elements[e];
+    const auto used = std::min(element.count, element.particles.size());
+    const std::string key = entry_key(key_of(*force) + ".append_elements()", e);
+    require_particles(key + ".particles", {element.particles.begin(), element.particles.begin() + used}, network);
+    const bool finite =
+        std::all_of(element.weights.begin(), element.weights.begin() + used, [](double w) { return std::isfinite(w); }) &&
+        std::isfinite(element.stiffness) && std::isfinite(element.damping);
+    if (!finite) {
+      throw InputError(
+          {.key = key, .rule = "must have finite weights, stiffness and damping", .remedy = "correct append_elements()"});
+    }
+  }
+}
+
+void check_added(const std::shared_ptr<Constraint>& constraint, const Control& control, const SpringNetwork& /*network*/) {
+  require_new("added constraint", constraint, control.constraints);
+}
+
+TouchedParticles checked_touched(const Control& control, const SpringNetwork& network) {
+  TouchedParticles touched;
+  const auto ask = [&](const auto& added) {
+    const std::optional<std::vector<Index>> its = added.touched();
+    touched.any = touched.any || !its;
+    if (!its) return;
+    require_particles(key_of(added) + ".touched()", *its, network);
+    touched.particles.insert(touched.particles.end(), its->begin(), its->end());
+  };
+  for (const auto& force : control.forces) ask(*force);
+  for (const auto& constraint : control.constraints) ask(*constraint);
+  return touched;
 }
 
 bool is_free_for(Index particle, const std::string& name, const Model& model, const SimulationState& state) {
@@ -163,12 +195,8 @@ bool is_free_for(Index particle, const std::string& name, const Model& model, co
 void check_pin(const SpringNetwork& model, const std::vector<Index>& particles, const std::string& name) {
   const std::string key = "pins." + name;
   ProblemList problems;
-  const auto exists = [&](Index i) { return i >= 0 && i < model.particle_count(); };
   if (particles.empty()) problems.add(key, "", "must contain at least one particle", "name a particle");
-  problems.require_each(
-      particles.size(), [&](std::size_t k) { return exists(particles[k]); },
-      [&](std::size_t k) { return std::to_string(particles[k]); },
-      {key, "must be the number of a particle; there are " + std::to_string(model.particle_count()), "count particles from 0"});
+  require_particles(key, particles, model, problems);
   std::vector<Index> sorted = particles;
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());

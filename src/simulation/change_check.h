@@ -1,12 +1,15 @@
-// The rules for changes that a program makes between two steps. Each function throws InputError.
+// The rules for changes that a program makes between two steps, and for a state with which it continues. Each function throws
+// InputError.
 #pragma once
 
 #include "base/problem_list.h"
 #include "dynamics/forces/force.h"
 #include "dynamics/state/simulation_state.h"
+#include "simulation/control.h"
 #include "simulation/model.h"
 
-#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,22 +20,17 @@ namespace sprung {
 void check_change(const SpringNetwork& network, const SimulatorSettings& settings, const Model& before,
                   const SimulationState& state);
 
-/// The number of an entry of a list of `count` entries.
-void check_entry(const std::string& key, std::size_t number, std::size_t count);
+/// The number of one of `count` things. `key` is their plural, such as "obstacles", and `what` completes "the number of": "an
+/// obstacle".
+void check_entry(const std::string& key, const std::string& what, std::int64_t number, std::int64_t count);
 
-/// Adds a problem instead, if a number is negative or not finite.
+/// Adds a problem if the number is negative or not finite; does not throw.
 void check_number(const std::string& key, double number, ProblemList& problems);
 
-/// The elements of a force that a program adds.
-void check_elements(const Force& force, const std::vector<LinearElement>& elements, Index particle_count);
-
-/// A rotation and a translation.
-void check_pose(const std::string& key, const RigidTransform& pose);
-
-/// The way between two poses in a step, of points that are up to `reach` [m] from their origin. It must not stretch a body to more
-/// than twice its size, so it is at most the size of the largest body.
-void check_travel(const std::string& key, const RigidTransform& from, const RigidTransform& to, double reach,
-                  const SpringNetwork& network);
+/// Throws if the pose is no rotation and translation, or if a step between these poses moves a point within `reach` [m] of the
+/// origin farther than the size [m] of the largest body. A longer step could stretch a body to more than twice its size.
+void check_move(const std::string& key, const RigidTransform& from, const RigidTransform& to, double reach,
+                const SpringNetwork& network);
 
 /// The number of a particle.
 void check_particle(const SpringNetwork& network, Index particle);
@@ -40,7 +38,25 @@ void check_particle(const SpringNetwork& network, Index particle);
 /// Whether a pin that holds this particle alone may have the name: none has it, or a former pin of this particle that was added.
 [[nodiscard]] bool is_free_for(Index particle, const std::string& name, const Model& model, const SimulationState& state);
 
+/// A force or a constraint that a program adds to those of the control. The elements of a force must be of particles.
+void check_added(const std::shared_ptr<Force>& force, const Control& control, const SpringNetwork& network);
+void check_added(const std::shared_ptr<Constraint>& constraint, const Control& control, const SpringNetwork& network);
+
+/// Asks the added forces and constraints which particles they touch.
+[[nodiscard]] TouchedParticles checked_touched(const Control& control, const SpringNetwork& network);
+
 /// A pin that a program adds. `model` has the pins that no program added.
 void check_pin(const SpringNetwork& model, const std::vector<Index>& particles, const std::string& name);
+
+/// What a state must fit.
+struct StateOwner {
+  const Model& model;
+  const Control& control;
+  Index sleep_groups = 0;    ///< their number
+  bool can_collide = false;  ///< whether there is anything that the network may touch
+};
+
+/// Names every number of the state that is not finite, and every count or index that does not fit its owner.
+void check_state(const StateOwner& owner, const SimulationState& state);
 
 }  // namespace sprung

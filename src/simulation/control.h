@@ -1,4 +1,4 @@
-// What a program decides for the steps to come.
+// Gravity, wind, forces and constraints that a program sets for the next steps.
 #pragma once
 
 #include "base/contact_material.h"
@@ -13,12 +13,19 @@
 
 namespace sprung {
 
+/// The particles that added forces and constraints move.
+struct TouchedParticles {
+  bool any = false;  ///< they may move any particle
+  std::vector<Index> particles{};
+};
+
 struct Control {
   std::optional<Vector3> gravity{};                   ///< [m/s^2], instead of that of the settings
   std::optional<Wind> wind{};                         ///< likewise
   std::vector<std::shared_ptr<Force>> forces{};       ///< in addition to those of the model
   Constraints constraints{};                          ///< likewise
-  std::vector<ContactMaterial> obstacle_materials{};  ///< instead of those of the model; empty: they hold
+  TouchedParticles touched{};                         ///< by these forces and constraints, when they were last asked
+  std::vector<ContactMaterial> obstacle_materials{};  ///< instead of those of the model; empty: those of the model
   std::function<bool()> stops{};                      ///< asked before each substep: true stops the step (StoppedError)
 
   /// Whether the program adds forces or constraints.

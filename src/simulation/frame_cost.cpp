@@ -130,6 +130,8 @@ double pass_time(const Simulator& simulator) {
 
 }  // namespace
 
+double steady_time() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
 FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int threads, const Clock& now) {
   const double step = simulator.settings().step;
   const bool implicit = std::holds_alternative<ImplicitEulerSettings>(simulator.settings().integrator);
@@ -148,12 +150,6 @@ FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int thre
           .full = steps_per_frame * full,
           .can_touch = touches,
           .failure = measured.failure};
-}
-
-FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int threads) {
-  return measure_frame_cost(simulator, steps_per_frame, threads, [] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  });
 }
 
 }  // namespace sprung

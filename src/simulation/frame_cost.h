@@ -27,12 +27,12 @@ struct FrameCost {
 /// Wall time [s] since a fixed moment.
 using Clock = std::function<double()>;
 
+/// The steady clock of the system.
+[[nodiscard]] double steady_time();
+
 /// Makes up to kMostMeasuredSteps steps. A free frame costs the median of their times, times `steps_per_frame`; `full` adds
 /// the estimated cost of contact and of the stretch limit with `threads` threads. Requires a simulator at time 0. Advances it by
 /// the measured steps; do not use it afterwards.
-[[nodiscard]] FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int threads, const Clock& now);
-
-/// With the steady clock of the system.
-[[nodiscard]] FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int threads);
+[[nodiscard]] FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int threads, const Clock& now = steady_time);
 
 }  // namespace sprung

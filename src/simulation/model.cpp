@@ -3,12 +3,10 @@
 #include "network/model/activity.h"
 #include "network/model/spring_failure.h"
 #include "simulation/settings/settings_check.h"
-#include "simulation/settings/unused_settings.h"
 #include "simulation/step/step_check.h"
 #include "simulation/stepper.h"
 
 #include <atomic>
-#include <limits>
 #include <utility>
 
 namespace sprung {
@@ -16,11 +14,8 @@ namespace {
 
 std::atomic<std::int64_t> built = 0;
 
-/// The pins that begin at time 0 hold their particles.
 SpringNetwork at_time_0(SpringNetwork network) {
-  Activity activity = all_free(network);
-  change_pins(network.pins, std::numeric_limits<double>::min(), activity);
-  set_activity(std::move(activity), network);
+  set_activity(first_activity(network), network);
   return network;
 }
 
@@ -35,10 +30,16 @@ Model::Model(SpringNetwork network, SimulatorSettings settings, std::shared_ptr<
       warnings_(check_step(settings_, bounds_)),
       initial_state_(sprung::initial_state(network_)) {
   ++built;
-  initial_state_.steps_per_frame = settings_.steps_per_frame;
+  note_settings(settings_, initial_state_);
   for (const auto& more : {unused_settings(settings_, network_, obstacles_->obstacles()), weak_springs(settings_, network_)}) {
     warnings_.insert(warnings_.end(), more.begin(), more.end());
   }
+}
+
+void note_settings(const SimulatorSettings& settings, SimulationState& state) {
+  state.steps_per_frame = settings.steps_per_frame;
+  state.step_length = settings.step;
+  state.integrator = settings.integrator.index();
 }
 
 BuildCounts Model::build_counts() { return {.models = built, .bounds = bounds_count()}; }
@@ -64,7 +65,7 @@ std::shared_ptr<const Model> Model::changed(const Model& before, SpringNetwork n
   SimulationState start = before.initial_state_;
   start.springs = model->initial_state_.springs;
   start.activity = model->initial_state_.activity;
-  start.steps_per_frame = model->settings_.steps_per_frame;
+  note_settings(model->settings_, start);
   model->initial_state_ = std::move(start);
   return model;
 }

@@ -1,4 +1,4 @@
-// The model: what a simulator needs and no step changes.
+// Model: the data of a simulation that no step changes.
 #pragma once
 
 #include "collision/obstacles/obstacle_set.h"
@@ -16,6 +16,9 @@
 namespace sprung {
 
 struct Scratch;
+
+/// Writes to a state with which settings it is made.
+void note_settings(const SimulatorSettings& settings, SimulationState& state);
 
 struct BuildCounts {
   std::int64_t models = 0;

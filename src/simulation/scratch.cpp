@@ -1,6 +1,7 @@
 #include "simulation/scratch.h"
 
 #include "dynamics/contact/collision_surface_builder.h"
+#include "dynamics/forces/material_dampers.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/model/spring_failure.h"
 #include "simulation/model/force_factory.h"
@@ -16,17 +17,8 @@ Structure::Structure(const SpringNetwork& network, const SimulatorSettings& sett
   if (settings.perturb) symmetry.emplace(network, settings.seed);
 }
 
-Touched::Touched(const Control& control) {
-  const auto note = [&](const std::optional<std::vector<Index>>& touched) {
-    any = any || !touched;
-    if (touched) particles.insert(particles.end(), touched->begin(), touched->end());
-  };
-  for (const auto& force : control.forces) note(force->touched());
-  for (const auto& constraint : control.constraints) note(constraint->touched());
-}
-
 Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
-                     const ObstacleSet& obstacles, const Control& control, const Touched& touched, Structure& structure)
+                     const ObstacleSet& obstacles, const Control& control, Structure& structure)
     : forces(
           network_forces(network, settings, splits_dampers(settings, bounds) ? MaterialDampers::apart : MaterialDampers::within)),
       attachments(network.attachments.empty()
@@ -42,14 +34,18 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
       surroundings(network, obstacles, structure.groups, settings.step, settings.gravity) {
   if (splits_dampers(settings, bounds)) {
     const double most = most_damping_rate(settings.step);
-    integrator->set_dampers(dampers_of_materials(network, most), std::min(most, bounds.material_damping));
+    integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
   }
-  touched_groups.assign(structure.groups.groups.size(), 0);
-  touches_any = touched.any;
-  for (const Index i : touched.particles) touched_groups[structure.groups.group_of[i]] = 1;
+  note_touched(control.touched, structure.groups);
   add_forces(network, settings, obstacles, control);
   constraints.set_steady_acceleration(largest_acceleration(forces));
   add_constraints(network, control);
+}
+
+void Workspace::note_touched(const TouchedParticles& touched, const SleepGroups& groups) {
+  touches_any = touched.any;
+  touched_groups.assign(groups.groups.size(), 0);
+  for (const Index i : touched.particles) touched_groups[groups.group_of[i]] = 1;
 }
 
 /// Those that network_forces() does not make.
@@ -71,7 +67,7 @@ void Workspace::add_constraints(const SpringNetwork& network, const Control& con
 }
 
 Scratch::Scratch(const Model& model, const Control& control, const SimulationState& state)
-    : settings(model.settings()), obstacles(model.obstacles()), touched_(control) {
+    : settings(model.settings()), obstacles(model.obstacles()) {
   for (std::size_t k = 0; k < control.obstacle_materials.size(); ++k) {
     obstacles.set_material(static_cast<Index>(k), control.obstacle_materials[k]);
   }
@@ -89,7 +85,7 @@ void Scratch::rebuild(const Model& model, const Control& control) {
   } else {
     structure.emplace(network, settings, obstacles);
   }
-  work.emplace(network, settings, model.bounds(), obstacles, control, touched_, *structure);
+  work.emplace(network, settings, model.bounds(), obstacles, control, *structure);
 }
 
 bool Scratch::follow(const Model& model, const Control& control, const SimulationState& state) {

@@ -23,7 +23,7 @@
 
 namespace sprung {
 
-/// What follows from the springs that are left, whatever holds or moves particles.
+/// Objects that depend on the unbroken springs alone, not on pins or sleep.
 struct Structure {
   Structure(const SpringNetwork& network, const SimulatorSettings& settings, const ObstacleSet& obstacles);
 
@@ -33,19 +33,13 @@ struct Structure {
   std::optional<SymmetryBreaker> symmetry;  ///< none unless the settings ask for it
 };
 
-/// What the forces and constraints of a control touch.
-struct Touched {
-  explicit Touched(const Control& control);
-
-  std::vector<Index> particles;
-  bool any = false;  ///< whether they may touch any particle
-};
-
 /// The other objects that make a step.
 struct Workspace {
   /// Keeps references to the network, the settings, the obstacles and the structure. The bounds are those of the model.
   Workspace(const SpringNetwork& network, const SimulatorSettings& settings, const SpectralBounds& bounds,
-            const ObstacleSet& obstacles, const Control& control, const Touched& touched, Structure& structure);
+            const ObstacleSet& obstacles, const Control& control, Structure& structure);
+
+  void note_touched(const TouchedParticles& touched, const SleepGroups& groups);
 
   Forces forces;
   ContactForce* penalty = nullptr;         ///< null unless contact is by penalty
@@ -66,7 +60,7 @@ struct Workspace {
   void add_constraints(const SpringNetwork& network, const Control& control);
 };
 
-/// What a state and the control make of the model, and memory of former steps. Whoever loses it can build it again.
+/// Model data as the state and the control change them, and caches. Can be rebuilt from the three.
 struct Scratch {
   /// For the state.
   Scratch(const Model& model, const Control& control, const SimulationState& state);
@@ -77,7 +71,7 @@ struct Scratch {
   /// runs out, there is no workspace until the scratch follows a state again.
   bool follow(const Model& model, const Control& control, const SimulationState& state);
 
-  /// Takes over gravity and wind. Costs nothing for each particle.
+  /// Sets gravity and wind. Takes one pass over particles and faces if there is air, else constant time.
   void follow_conditions(const Control& control);
 
   SpringNetwork network;            ///< of the present
@@ -96,7 +90,6 @@ struct Scratch {
   void steer(const Model& model, const SimulationState& state);
   void rebuild(const Model& model, const Control& control);
 
-  Touched touched_;           ///< asked once: the control has a scratch of its own
   std::vector<char> broken_;  ///< springs of the model that `network` lacks
   Steering steering_;         ///< of which the network and the obstacles have the motions
 };

@@ -4,8 +4,7 @@
 #include "base/problem_list.h"
 #include "simulation/change_check.h"
 #include "simulation/reaction_record.h"
-#include "simulation/state_check.h"
-#include "simulation/steering.h"
+#include "simulation/settings/settings_check.h"
 #include "simulation/step/step_check.h"
 #include "simulation/stepper.h"
 
@@ -14,11 +13,26 @@
 #include <utility>
 
 namespace sprung {
+namespace {
+
+void check_number_of(const std::string& key, const std::string& what, std::size_t number, std::size_t count) {
+  check_entry(key, what, static_cast<std::int64_t>(number), static_cast<std::int64_t>(count));
+}
+
+bool bounds_step(const Force& force) {
+  std::vector<LinearElement> elements;
+  force.append_elements(elements);
+  return !elements.empty();
+}
+bool bounds_step(const Constraint& /*constraint*/) { return false; }
+
+}  // namespace
+
 struct Simulator::Implementation {
   Implementation(std::shared_ptr<const Model> shared, Control chosen, const SimulationState& from)
       : model(std::move(shared)), control(std::move(chosen)), state(from) {
     scratch = std::make_unique<Scratch>(*model, control, state);
-    stepper().enter();
+    stepper().initialize(true);
   }
   /// At the start.
   Implementation(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
@@ -32,8 +46,15 @@ struct Simulator::Implementation {
   template <class Change>
   void change_awake(const Change& change);
   void change_activity(const Activity& activity);
+  void continue_with(SpringNetwork network, SimulatorSettings settings);
+  template <class Change>
+  void change_settings(const Change& change);
   void change_model(std::shared_ptr<const Model> next);
   void change_control(Control next);
+  template <class Added>
+  void add(std::vector<std::shared_ptr<Added>> Control::*list, std::shared_ptr<Added> added);
+  template <class Added>
+  void remove(std::vector<std::shared_ptr<Added>> Control::*list, const Added& added);
 
   std::unique_ptr<Scratch> scratch;
   std::shared_ptr<const Model> model;
@@ -69,6 +90,19 @@ void Simulator::Implementation::change_activity(const Activity& activity) {
   stepper().note_change();
 }
 
+void Simulator::Implementation::continue_with(SpringNetwork network, SimulatorSettings settings) {
+  check_change(network, settings, *model, state);
+  change_awake([&] { change_model(Model::changed(*model, std::move(network), std::move(settings), control.forces)); });
+}
+
+/// `change` gets the present settings.
+template <class Change>
+void Simulator::Implementation::change_settings(const Change& change) {
+  SimulatorSettings changed = scratch->settings;
+  change(changed);
+  continue_with(model->network(), std::move(changed));
+}
+
 void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) {
   const BeforeTransition before = stepper().before_transition();
   SimulationState continued = continued_in(*next, *model, state);
@@ -76,7 +110,7 @@ void Simulator::Implementation::change_model(std::shared_ptr<const Model> next) 
   with_settings.gravity.reset();
   with_settings.wind.reset();
   auto its_scratch = std::make_unique<Scratch>(*next, with_settings, continued);
-  Stepper(*next, with_settings, continued, *its_scratch).inherit(before, *model);
+  Stepper(*next, with_settings, continued, *its_scratch).adopt(before, *model);
   control = std::move(with_settings);
   model = std::move(next);
   scratch = std::move(its_scratch);
@@ -90,11 +124,31 @@ void Simulator::Implementation::change_control(Control next) {
     continued.added_forces = next.forces.size();
     continued.added_constraints = next.constraints.size();
     auto its_scratch = std::make_unique<Scratch>(*model, next, continued);
-    Stepper(*model, next, continued, *its_scratch).inherit(before, *model);
+    Stepper(*model, next, continued, *its_scratch).adopt(before, *model);
     control = std::move(next);
     scratch = std::move(its_scratch);
     state = continued;
   });
+}
+
+template <class Added>
+void Simulator::Implementation::add(std::vector<std::shared_ptr<Added>> Control::*list, std::shared_ptr<Added> added) {
+  check_added(added, control, network());
+  Control next = control;
+  (next.*list).push_back(std::move(added));
+  next.touched = checked_touched(next, network());
+  if (bounds_step(*(next.*list).back())) {
+    check_step(scratch->settings, simulation_bounds(model->network(), scratch->settings, !scratch->obstacles.empty(), next.forces));
+  }
+  change_control(std::move(next));
+}
+
+template <class Added>
+void Simulator::Implementation::remove(std::vector<std::shared_ptr<Added>> Control::*list, const Added& added) {
+  Control next = control;
+  if (std::erase_if(next.*list, [&](const auto& other) { return other.get() == &added; }) == 0) return;
+  next.touched = checked_touched(next, network());
+  change_control(std::move(next));
 }
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
@@ -132,21 +186,19 @@ StepReport Simulator::step() { return implementation_->stepper().step(); }
 
 void Simulator::stop_when(std::function<bool()> stops) { implementation_->control.stops = std::move(stops); }
 
-void Simulator::wake() { implementation_->wake(); }
+void Simulator::wake() {
+  implementation_->control.touched = checked_touched(implementation_->control, network());
+  implementation_->scratch->work->note_touched(implementation_->control.touched, implementation_->scratch->structure->groups);
+  implementation_->wake();
+}
 
 void Simulator::continue_with(SpringNetwork network, SimulatorSettings settings) {
-  check_change(network, settings, *model(), state());
-  implementation_->change_awake([&] {
-    implementation_->change_model(
-        Model::changed(*model(), std::move(network), std::move(settings), implementation_->control.forces));
-  });
+  implementation_->continue_with(std::move(network), std::move(settings));
 }
 
 void Simulator::set_gravity(const Vector3& acceleration) {
   if (!acceleration.allFinite() || settings().air_surface.quadratic) {  // the largest stable step counts on the speed of a fall
-    SimulatorSettings changed = settings();
-    changed.gravity = acceleration;
-    continue_with(model()->network(), std::move(changed));
+    implementation_->change_settings([&](SimulatorSettings& changed) { changed.gravity = acceleration; });
     return;
   }
   implementation_->control.gravity = acceleration;
@@ -156,57 +208,61 @@ void Simulator::set_gravity(const Vector3& acceleration) {
 void Simulator::set_air(double drag, const Wind& wind) {
   // The largest stable step counts on the usual speed of the wind where drag is quadratic.
   const bool faster = has_own_drag(network()) && wind.usual_speed() > model()->settings().wind.usual_speed();
-  if (drag != settings().air_drag || settings().air_surface.quadratic || faster || !std::isfinite(wind.max_speed())) {
-    SimulatorSettings changed = settings();
-    changed.air_drag = drag;
-    changed.wind = wind;
-    continue_with(model()->network(), std::move(changed));
+  if (drag != settings().air_drag || settings().air_surface.quadratic || faster) {
+    implementation_->change_settings([&](SimulatorSettings& changed) {
+      changed.air_drag = drag;
+      changed.wind = wind;
+    });
     return;
   }
+  ProblemList problems;
+  check_wind(wind, problems);
+  problems.throw_if_any();
   implementation_->control.wind = wind;
   implementation_->stepper().follow_conditions();
 }
 
 void Simulator::set_stretch_limit(const std::optional<StretchLimitSettings>& limit) {
-  SimulatorSettings changed = settings();
-  changed.stretch_limit = limit;
-  continue_with(model()->network(), std::move(changed));
+  implementation_->change_settings([&](SimulatorSettings& changed) { changed.stretch_limit = limit; });
 }
 
 void Simulator::set_springs(std::size_t body, SpringKind kind, double stiffness, double damping) {
   SpringNetwork network = model()->network();
-  check_entry("bodies", body, network.bodies.size());
-  check_entry("kinds of springs", static_cast<std::size_t>(kind), kSpringKindNames.size());
+  check_number_of("kinds of springs", "a kind of springs", static_cast<std::size_t>(kind), kSpringKindNames.size());
+  check_number_of("bodies", "a body", body, network.bodies.size());
   const Body& changed = network.bodies[body];
   const std::string key = "bodies." + changed.name + ".springs." + kSpringKindNames[static_cast<std::size_t>(kind)];
   ProblemList problems;
   check_number(key + ".stiffness", stiffness, problems);
   check_number(key + ".damping", damping, problems);
-  problems.throw_if_any();
   Springs& springs = network.springs;
+  bool any = false;
   for (Index s = changed.first_spring; s < changed.first_spring + changed.spring_count; ++s) {
     if (springs.kind[s] != kind) continue;
+    any = true;
     springs.stiffness[s] = stiffness;
     springs.damping[s] = damping;
   }
-  continue_with(std::move(network), settings());
+  if (!any) problems.add(key, "", "has no springs", "build the body with springs of this kind");
+  problems.throw_if_any();
+  implementation_->continue_with(std::move(network), settings());
 }
 
 void Simulator::set_body_material(std::size_t body, const ContactMaterial& material) {
   SpringNetwork network = model()->network();
-  check_entry("bodies", body, network.bodies.size());
+  check_number_of("bodies", "a body", body, network.bodies.size());
   Body& changed = network.bodies[body];
   ProblemList problems;
   check_material("bodies." + changed.name, material, problems);
   problems.throw_if_any();
   changed.material = material;
-  continue_with(std::move(network), settings());
+  implementation_->continue_with(std::move(network), settings());
 }
 
 void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMaterial& material) {
-  check_entry("obstacles", obstacle, obstacles().size());
+  check_number_of("obstacles", "an obstacle", obstacle, obstacles().size());
   ProblemList problems;
-  check_material("obstacles." + obstacles()[obstacle].name, material, problems);
+  check_material(obstacle_key(obstacles()[obstacle], obstacle), material, problems);
   problems.throw_if_any();
   Control control = implementation_->control;
   control.obstacle_materials.clear();
@@ -274,14 +330,14 @@ void Simulator::release(Index particle) {
 }
 
 RigidTransform Simulator::pin_pose(std::size_t pin) const {
-  check_entry("pins", pin, network().pins.size());
+  check_number_of("pins", "a pin", pin, network().pins.size());
   const Pin& its = network().pins[pin];
   if (its.obstacle != kNone) return obstacle_pose(static_cast<std::size_t>(its.obstacle));
   return its.motion.pose(RigidTransform(Eigen::Translation3d(its.origin)), time());
 }
 
 RigidTransform Simulator::obstacle_pose(std::size_t obstacle) const {
-  check_entry("obstacles", obstacle, obstacles().size());
+  check_number_of("obstacles", "an obstacle", obstacle, obstacles().size());
   return obstacles()[obstacle].motion.pose(obstacles()[obstacle].rest_pose, time());
 }
 
@@ -290,62 +346,42 @@ void Simulator::move_pin(std::size_t pin, const RigidTransform& pose) {
   const Pin& moved = network().pins[pin];
   const std::string key = "pins." + moved.name + ".pose";
   if (moved.obstacle != kNone) {
-    const std::string& obstacle = obstacles()[static_cast<std::size_t>(moved.obstacle)].name;
+    const auto obstacle = static_cast<std::size_t>(moved.obstacle);
     throw InputError({.key = key,
                       .value = vector_text(pose.translation()),
-                      .rule = "cannot be given: the pin follows the obstacle \"" + obstacle + "\"",
+                      .rule = "cannot be given: the pin follows " + obstacle_key(obstacles()[obstacle], obstacle),
                       .remedy = "move the obstacle"});
   }
-  check_pose(key, pose);
-  double reach = 0.0;
-  for (const Index i : held_particles(network(), pin)) {
-    reach = std::max(reach, (state().x.col(i) - present.translation()).norm());
+  const bool begins =
+      state().activity.phases[pin] == PinPhase::waiting && moved.from < due_before(whole_steps(state()), settings().step);
+  const std::vector<Index> held = begins ? moved.particles : held_particles(network(), pin);
+  if (held.empty()) {
+    throw InputError({.key = key,
+                      .value = vector_text(pose.translation()),
+                      .rule = "cannot be given: the pin holds no particle now",
+                      .remedy = "move it while it holds one, or pin particles with pin()"});
   }
-  check_travel(key, present, pose, reach, model()->network());
+  double reach = 0.0;
+  for (const Index i : held) reach = std::max(reach, (state().x.col(i) - present.translation()).norm());
+  check_move(key, present, pose, reach, model()->network());
   implementation_->stepper().steer(&Steering::pins, pin, present, pose);
 }
 
 void Simulator::move_obstacle(std::size_t obstacle, const RigidTransform& pose) {
   const RigidTransform present = obstacle_pose(obstacle);
-  const std::string key = "obstacles." + obstacles()[obstacle].name + ".pose";
-  check_pose(key, pose);
+  const std::string key = obstacle_key(obstacles()[obstacle], obstacle) + ".pose";
   const Box3 box = implementation_->scratch->obstacles.shape(static_cast<Index>(obstacle)).bounds();
   const double reach = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
-  check_travel(key, present, pose, std::isfinite(reach) ? reach : 0.0, model()->network());  // a half-space has no end
+  check_move(key, present, pose, std::isfinite(reach) ? reach : 0.0, model()->network());  // a half-space has no end
   implementation_->stepper().steer(&Steering::obstacles, obstacle, present, pose);
 }
 
-void Simulator::add_force(std::shared_ptr<Force> force) {
-  Control control = implementation_->control;
-  control.forces.push_back(std::move(force));
-  std::vector<LinearElement> elements;
-  control.forces.back()->append_elements(elements);
-  if (!elements.empty()) {
-    check_elements(*control.forces.back(), elements, network().particle_count());
-    check_step(settings(), simulation_bounds(model()->network(), settings(), !obstacles().empty(), control.forces));
-  }
-  implementation_->change_control(std::move(control));
-}
-
-void Simulator::remove_force(const Force& force) {
-  Control control = implementation_->control;
-  const auto is_it = [&](const std::shared_ptr<Force>& added) { return added.get() == &force; };
-  if (std::erase_if(control.forces, is_it) == 0) return;
-  implementation_->change_control(std::move(control));
-}
-
+void Simulator::add_force(std::shared_ptr<Force> force) { implementation_->add(&Control::forces, std::move(force)); }
+void Simulator::remove_force(const Force& force) { implementation_->remove(&Control::forces, force); }
 void Simulator::add_constraint(std::shared_ptr<Constraint> constraint) {
-  Control control = implementation_->control;
-  control.constraints.push_back(std::move(constraint));
-  implementation_->change_control(std::move(control));
+  implementation_->add(&Control::constraints, std::move(constraint));
 }
-
-void Simulator::remove_constraint(const Constraint& constraint) {
-  Control control = implementation_->control;
-  const auto is_it = [&](const std::shared_ptr<Constraint>& added) { return added.get() == &constraint; };
-  if (std::erase_if(control.constraints, is_it) == 0) return;
-  implementation_->change_control(std::move(control));
-}
+void Simulator::remove_constraint(const Constraint& constraint) { implementation_->remove(&Control::constraints, constraint); }
 
 const std::shared_ptr<const Model>& Simulator::model() const { return implementation_->model; }
 const SpringNetwork& Simulator::network() const { return implementation_->network(); }

@@ -27,12 +27,15 @@ struct BrokenLink {
   std::int64_t step = 0;   ///< number of the step after which it broke
 };
 
-/// The model and its state, with steps and changes. A copy shares the model and the added forces and constraints, and goes on from
-/// the same state.
+/// The model and its state, with steps and changes.
 ///
-/// Threads: several simulators may be used at the same time, also copies; their added forces and constraints must permit that. Of
-/// one simulator, const members may be called at the same time. A member that is not const must be alone.
-/// Costs: a member without a word on its cost takes a constant time of less than a microsecond.
+/// A copy shares the model and the added forces and constraints, and continues from the same state. A copy starts with empty
+/// caches, so its results may differ from those of its original: in last digits, which grow in contact. Copies of one state agree
+/// bit by bit. To let the original agree too, call original.restore(original.state()) when you copy it.
+///
+/// Threads: several simulators may be used at the same time, also copies, if their added forces and constraints permit that (see
+/// Force and Constraint). Of one simulator, const members may be called at the same time. A member that is not const must be alone.
+/// Costs: constant, below a microsecond, unless a member states its cost.
 class Simulator {
  public:
   /// Throws as Model::build, and costs as much.
@@ -61,7 +64,10 @@ class Simulator {
   StepReport step();
 
   /// Continues from a state of this simulator, of a copy of it, or of another simulator of the same network, settings and
-  /// obstacles. Forces and constraints that were added are not part of the state, but it demands as many, in the same order.
+  /// obstacles. Gravity, air, limits, stiffness and materials stay as they are now. Added forces and constraints are not part of
+  /// the state; the simulator must have the same number, in the same order. The step and the kind of the integrator must be those
+  /// with which the state was made. Other differences between the simulators are not noticed, such as stiffness, masses, shapes and
+  /// motions of obstacles.
   /// Results may differ from those of the simulator that had the state, which has caches of former steps: in last digits, or, where
   /// fast bodies collide, in which contacts are found. Costs about as much as a few steps. Throws InputError if the state does not
   /// fit the network, the settings or the obstacles; the simulation then continues as before.
@@ -76,12 +82,14 @@ class Simulator {
   // simulation then continues as before. A new model costs about as much as the constructor without its obstacles.
 
   /// Costs a new model. Continues with another network and other settings. Requires a network that NetworkBuilder made with the
-  /// same bodies and the same particles. The start of contact cannot change, nor what collides (Body::contact) or how (response).
-  /// The step may change with steps_per_frame at the end of a frame. Springs that broke stay broken, and springs that yielded keep
-  /// their rest lengths. If the pins are the same, particles that pin() and release() changed stay so.
+  /// same bodies and the same particles. The settings of the start, the pairs of bodies that collide (Body::contact) and the
+  /// contact response cannot change. The step may change with steps_per_frame at the end of a frame. Springs that broke stay
+  /// broken, and springs that yielded keep their rest lengths. If the pins are the same, particles that pin() and release() changed
+  /// stay so.
   void continue_with(SpringNetwork network, SimulatorSettings settings);
 
-  /// Wakes all particles. Costs about as much as a few steps if any sleep.
+  /// Wakes all particles, and asks added forces and constraints again which particles they touch. Throws InputError if one of them
+  /// does not exist. Costs about as much as a few steps if any sleep.
   void wake();
 
   /// [m/s^2]. Costs less than a hundredth of a step; with a quadratic SimulatorSettings::air_surface a new model, as its bound
@@ -95,7 +103,8 @@ class Simulator {
   /// Costs a new model.
   void set_stretch_limit(const std::optional<StretchLimitSettings>& limit);
 
-  /// Gives all springs of a kind in a body this stiffness [N/m] and damping [N s/m]. Costs a new model.
+  /// Gives all springs of a kind in a body this stiffness [N/m] and damping [N s/m]. Throws InputError also if there are none.
+  /// Costs a new model.
   void set_springs(std::size_t body, SpringKind kind, double stiffness, double damping);
 
   /// Costs a new model.
@@ -113,17 +122,18 @@ class Simulator {
   /// Throws InputError also if the name is that of a pin or an attachment of the network. Costs about as much as a few steps.
   std::size_t pin(const std::vector<Index>& particles, const std::string& name);
 
-  /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned. Costs
-  /// about as much as a few steps; for a pin that holds always in addition the bounds of a new model.
+  /// Frees a particle from its pin; it continues with the pin's velocity. Does nothing if it is not pinned. Costs about as much as
+  /// a few steps. If the pin always holds, the spectral bounds are computed again.
   void release(Index particle);
 
   // Steering. The next step moves a pin or an obstacle to a pose, on a line and with the shortest rotation; its velocity follows.
   // It then stays there, whatever keyframes it had, until it is moved again. Call it before each step. A step may move no point
-  // farther than the largest body is large, so that it stretches none to more than twice its size: contact follows obstacles that
-  // far. Elements that a pin drags through an obstacle cross it, as ever. Throws InputError if the pose is not a rotation and a
+  // farther than the size of the largest body: contact is found up to that distance, and no body is stretched to more than twice
+  // its size. A pin may still drag elements through an obstacle. Throws InputError if the pose is not a rotation and a
   // translation, or too far; it then names the distance, and the number of steps to go there in.
 
-  /// The rigid motion from the present pose to this one moves the particles of a pin. Not for pins that follow an obstacle.
+  /// Moves the particles of a pin by the rigid motion from its present pose to `pose`. Throws InputError for pins that follow an
+  /// obstacle, and for pins that hold no particle.
   /// Costs about as much as a few steps at the first call for a pin, then a time that grows with its particles.
   void move_pin(std::size_t pin, const RigidTransform& pose);
   /// Costs about as much as a few steps at the first call for an obstacle.
@@ -132,15 +142,16 @@ class Simulator {
   [[nodiscard]] RigidTransform pin_pose(std::size_t pin) const;  ///< now; of a pin without motion: a translation to its origin
   [[nodiscard]] RigidTransform obstacle_pose(std::size_t obstacle) const;  ///< now
 
-  /// Adds an external force. The caller may change its parameters between steps. The force must not keep references to network().
-  /// The largest stable step accounts for the elements that the force appends: it is found anew if there are any. Throws InputError
-  /// if the step is beyond it. The energy is not checked while there are external forces, as they may supply any amount. Only the
-  /// particles that the force touches (Force::touched) stay awake. Costs a few dozen steps, and the bounds of a new model for
-  /// elements.
+  /// Adds an external force that was not added yet. The caller may change its parameters between steps. The force must not keep
+  /// references to network(). The largest stable step accounts for the elements that the force appends: it is found anew if there
+  /// are any. Throws InputError if the step is beyond it, or if the force names particles that do not exist. The energy is not
+  /// checked while there are external forces, as they may supply any amount. Only the particles that the force touches
+  /// (Force::touched) stay awake. Costs a few dozen steps, and the bounds of a new model for elements.
   void add_force(std::shared_ptr<Force> force);
 
-  /// Adds a constraint, which the passes of each step restore. The caller may change its parameters between steps. The constraint
-  /// must not keep references to network(). The energy is not checked while there are added constraints. Costs a few dozen steps.
+  /// Adds a constraint that was not added yet. The passes of each step restore it. Throws InputError if it touches particles that
+  /// do not exist. The caller may change its parameters between steps. The constraint must not keep references to network(). The
+  /// energy is not checked while there are added constraints. Costs a few dozen steps.
   void add_constraint(std::shared_ptr<Constraint> constraint);
 
   /// Removes a constraint. Does nothing if it was not added. Costs a few dozen steps.
@@ -156,7 +167,8 @@ class Simulator {
   [[nodiscard]] const SimulatorSettings& settings() const;
   [[nodiscard]] const SimulationState& state() const;
   [[nodiscard]] const std::vector<Obstacle>& obstacles() const;
-  [[nodiscard]] ObstacleFrame obstacle_frame() const;  ///< the obstacles at time(); grows with their number
+  /// The obstacles at time(). Include collision/obstacles/obstacle_frame.h to use it. The cost grows with their number.
+  [[nodiscard]] ObstacleFrame obstacle_frame() const;
   [[nodiscard]] const std::vector<std::string>& warnings() const;
   /// Changes that the settings asked for, such as bodies that `push_out` moved; a sentence each.
   [[nodiscard]] const std::vector<std::string>& notes() const;
@@ -193,7 +205,8 @@ class Simulator {
   // With SimulatorSettings::record_forces. The cost grows with the number of pins, attachments and springs.
 
   /// The mean force [N] of each pin on its body, then of each attachment on its first ends, since reset_forces() or time 0: impulse
-  /// by time, in the order in which they were added; 0 of those that did not act then. Empty without the setting.
+  /// by time, in the order in which they were added; 0 of those that did not act then. Empty without the setting. Forces on
+  /// obstacles are not recorded.
   [[nodiscard]] std::vector<Reaction> reactions() const;
 
   /// The mean force with which the stretch limit pulled each spring's ends together since then [N]; negative: it pushed. Zero

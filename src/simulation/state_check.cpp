@@ -1,12 +1,10 @@
-#include "simulation/state_check.h"
-
 #include "base/format.h"
-#include "base/problem_list.h"
 #include "geometry/motion/motion_check.h"
+#include "simulation/change_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -28,6 +26,8 @@ class StateRules {
   StateRules(const StateOwner& owner, const SimulationState& state) : owner_(owner), state_(state) {}
 
   void check_all() {
+    require_points("x", state_.x);
+    problems_.throw_if_any();  // most counts would be wrong too
     check_time();
     check_motion();
     check_activity();
@@ -43,21 +43,35 @@ class StateRules {
 
  private:
   void check_time() {
-    const std::int64_t steps = owner_.model.settings().steps_per_frame;
+    const SimulatorSettings& settings = owner_.model.settings();
+    const std::int64_t steps = settings.steps_per_frame;
     require(state_.step >= 0 && state_.step <= kMostSteps, "step", state_.step, "must be from 0 to 2^53");
     require(state_.frame >= 0 && state_.frame <= kMostSteps / steps, "frame", state_.frame, "must be from 0 to 2^53 steps");
-    require(state_.steps_per_frame == steps, "steps_per_frame", state_.steps_per_frame, "must be that of the settings");
+    require_setting("step_length", format_number(state_.step_length), format_number(settings.step));
+    require_setting("steps_per_frame", std::to_string(state_.steps_per_frame), std::to_string(steps));
+    require_setting("integrator", integrator_name(state_.integrator), integrator_name(settings.integrator.index()));
     require(state_.step_in_frame >= 0 && state_.step_in_frame < steps, "step_in_frame", state_.step_in_frame,
             "must be from 0 to one less than the steps of a frame");
-    const SimulatorSettings& settings = owner_.model.settings();
     const int most = settings.stretch_limit ? settings.max_substeps : 1;
     require(state_.substeps >= 1 && state_.substeps <= most, "substeps", state_.substeps,
             "must be from 1 to " + std::to_string(most) + ", as the settings say");
     require(state_.substep == 0, "substep", state_.substep, "must be 0, as between two steps");
   }
 
+  static std::string integrator_name(std::size_t number) {
+    constexpr std::array<const char*, std::variant_size_v<IntegratorSettings>> kNames{
+        "ExplicitEulerSettings",  "SymplecticEulerSettings", "VerletSettings",
+        "VelocityVerletSettings", "RungeKutta4Settings",     "ImplicitEulerSettings"};
+    return number < kNames.size() ? kNames[number] : std::to_string(number);
+  }
+
+  void require_setting(const std::string& key, const std::string& in_state, const std::string& in_simulator) {
+    if (in_state == in_simulator) return;
+    problems_.add("state." + key, in_state, "must be that of this simulator, " + in_simulator,
+                  "call continue_with() with the settings of the simulator that had the state, then restore()");
+  }
+
   void check_motion() {
-    require_points("x", state_.x);
     require_points("v", state_.v);
     require_points("x_previous", state_.x_previous);
     require_size("limit.handovers", state_.limit.handovers.size(), network().bodies.size(), "bodies");
@@ -66,7 +80,7 @@ class StateRules {
     });
     const EnergyMemory& energy = state_.energy;
     const double sum = energy.start + energy.highest_gravity + energy.stored + energy.max_kinetic + energy.fastest_drive;
-    require(std::isfinite(sum), "energy", sum, "must be finite");
+    require_finite("energy", sum);
   }
 
   void check_activity() {
@@ -142,7 +156,8 @@ class StateRules {
     const std::size_t histories = rest.window_begin ? groups + network().bodies.size() : 0;
     require_size("rest.histories", rest.histories.size(), histories, "sleep groups and bodies, after the begin of a window");
     if (!rest.window_begin) return;
-    require(std::isfinite(*rest.window_begin), "rest.window_begin", *rest.window_begin, "must be finite");
+    require_finite("rest.window_begin", *rest.window_begin);
+    require(rest.frames >= 0, "rest.frames", rest.frames, "must not be negative");
     require_points("rest.x_at_frame", rest.x_at_frame);
     for (const Points& positions : rest.x_at_begins) require_points("rest.x_at_begins", positions);
     require_points("rest.x_beside_sleep", rest.x_beside_sleep);
@@ -231,12 +246,11 @@ class StateRules {
   void require(bool good, const std::string& key, const std::string& value, const std::string& rule) {
     if (!good) add(key, value, rule);
   }
-  template <std::integral Number>
-  void require(bool good, const std::string& key, Number value, const std::string& rule) {
-    if (!good) add(key, std::to_string(value), rule);
+  void require(bool good, const std::string& key, std::int64_t value, const std::string& rule) {
+    require(good, key, std::to_string(value), rule);
   }
-  void require(bool good, const std::string& key, double value, const std::string& rule) {
-    if (!good) add(key, format_number(value), rule);
+  void require_finite(const std::string& key, double value) {
+    require(std::isfinite(value), key, format_number(value), "must be finite");
   }
   void require_size(const std::string& key, std::size_t size, std::size_t count, const std::string& what) {
     const std::string rule = "must have " + std::to_string(count) + " entries, one for each of the " + what;

@@ -1,6 +1,4 @@
 // Pins and obstacles that a program moves.
-#include "simulation/steering.h"
-
 #include "network/model/spring_failure.h"
 #include "simulation/stepper.h"
 
@@ -12,7 +10,7 @@
 namespace sprung {
 namespace {
 
-/// The first pose, and those at which pins took particles before `now` [s]: pins move these by what the pose changed since.
+/// The first pose, and the poses at which pins gripped particles before `now` [s]: such particles move by the change of pose since.
 std::vector<TimedPose> poses_of_grips(const SteeredMotion& steered, const std::vector<PinGrip>& grips, double now) {
   const double first = steered.poses.front().time;
   std::set<double> times;
@@ -25,13 +23,6 @@ std::vector<TimedPose> poses_of_grips(const SteeredMotion& steered, const std::v
   return poses;
 }
 
-bool have_same_pins(const SpringNetwork& a, const SpringNetwork& b) {
-  return std::ranges::equal(a.pins, b.pins, [](const Pin& first, const Pin& second) {
-    return first.name == second.name && first.particles == second.particles && first.from == second.from &&
-           first.until == second.until;
-  });
-}
-
 /// Pins that a program added, and those of the same name and particles that it steers, go on in a model with other pins.
 void keep_pins(const std::vector<Pin>& before, const std::vector<Pin>& after, const std::vector<Index>& pin_of,
                SimulationState& state) {
@@ -41,9 +32,7 @@ void keep_pins(const std::vector<Pin>& before, const std::vector<Pin>& after, co
     if (steered.number >= before.size()) {
       steered.number += after.size() - before.size();
     } else {
-      const Pin& its = before[steered.number];
-      const auto same = std::ranges::find_if(
-          after, [&](const Pin& pin) { return pin.name == its.name && pin.particles == its.particles && pin.from == its.from; });
+      const auto same = std::ranges::find_if(after, [&](const Pin& pin) { return are_alike(pin, before[steered.number]); });
       if (same == after.end()) continue;
       steered.number = static_cast<std::size_t>(same - after.begin());
     }
@@ -79,7 +68,7 @@ SimulationState continued_in(const Model& next, const Model& before, const Simul
   SimulationState continued = state;
   fit_moves(next.settings(), before.settings(), continued);
   continued.springs = carried_over(before.network(), state.springs, next.network());
-  if (have_same_pins(before.network(), next.network())) return continued;
+  if (std::ranges::equal(before.network().pins, next.network().pins, are_alike)) return continued;
   continued.activity = all_free(next.network());
   keep_pins(before.network().pins, next.network().pins, state.activity.pin_of, continued);
   change_pins(next.network().pins, due_before(whole_steps(state), before.settings().step), continued.activity);

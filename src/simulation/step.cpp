@@ -163,7 +163,7 @@ StepTrial Stepper::make_trial(const StepPlan& plan) {
   return trial;
 }
 
-/// What changes between two steps, at the begin of each attempt.
+/// Updates attachments and pushes off symmetry, at the begin of each attempt.
 void Stepper::prepare_step() {
   update_attachments();
   if (structure().symmetry && constraints().contacts().can_collide() && structure().symmetry->may_push(state_.x)) {
@@ -252,7 +252,7 @@ void Stepper::move_pins(double time) {
   }
 }
 
-/// Its pin, not what acts on the particle, changed the velocity. Requires that the state records impulses.
+/// Records the impulse by which the pin changed the velocity of the particle. Requires that the state records impulses.
 void Stepper::record_gain(Index particle, const Vector3& velocity_before) {
   state_.impulses.on_pinned.col(particle) -= network().masses[particle] * (state_.v.col(particle) - velocity_before);
 }
@@ -281,7 +281,12 @@ void Stepper::note_contacts() {
 }
 
 void Stepper::check_state() {
-  if (const auto failure = structure().divergence.not_finite(state_, constraints().positions_before(state_))) fail(*failure);
+  if (auto failure = structure().divergence.not_finite(state_, constraints().positions_before(state_))) {
+    if (control_.adds_any()) {
+      failure->remedy = "check the added forces and constraints: one may give nan, or a force may lack append_elements()";
+    }
+    fail(std::move(*failure));
+  }
   const Index check_interval = 1 + network().springs.count() / kSpringsCheckedPerStep;
   if (state_.step % check_interval == 0) {
     if (const auto failure = structure().divergence.overstretched(state_.x)) fail(*failure);

@@ -9,7 +9,7 @@
 
 namespace sprung {
 
-/// What a transition needs of the time before it.
+/// Values from before a transition, which the transition needs.
 struct BeforeTransition {
   Activity activity;
   std::vector<Pin> pins;   ///< that the numbers of the activity mean
@@ -26,7 +26,7 @@ class Stepper {
   Stepper(const Model& model, const Control& control, SimulationState& state, Scratch& scratch)
       : model_(model), control_(control), state_(state), scratch_(scratch) {}
 
-  /// Makes the state at time 0: pins take their particles, bodies leave intersections, attachments engage. Appends messages.
+  /// Makes the state at time 0: pins move their particles, bodies leave intersections, attachments engage. Appends messages.
   void start(std::vector<std::string>& warnings, std::vector<std::string>& notes);
 
   /// Makes a step. If it throws, the state is that at its begin.
@@ -35,17 +35,17 @@ class Stepper {
   /// Continues from a former state of the model. Costs as much as a transition if its springs or its activity differ.
   void restore(const SimulationState& former);
 
-  /// Lets a new workspace begin with the state.
-  void enter();
+  /// Initializes the workspace from the state. `is_new`: it was just made, so that the integrator is initialized too.
+  void initialize(bool is_new);
 
   /// Lets forces know gravity and wind. All particles wake in the next step.
   void follow_conditions();
 
   [[nodiscard]] BeforeTransition before_transition() const;
-  /// Lets the scratch follow a state whose springs, pins or sleepers changed.
+  /// Updates the scratch after springs, pins or sleepers of the state changed.
   void make_transition(const BeforeTransition& before);
-  /// Takes a state over from a former model of the same particles, or a former control. Records energies anew.
-  void inherit(const BeforeTransition& before, const Model& former);
+  /// Adopts a state from another model of the same particles, or from another control. Records energies anew.
+  void adopt(const BeforeTransition& before, const Model& former);
 
   void wake_all();
   /// Wakes the groups near moving pins and obstacles.
@@ -129,5 +129,8 @@ class Stepper {
   Scratch& scratch_;
   bool has_begun_ = false;  ///< whether `begin` of the scratch is the begin of the present step
 };
+
+/// The state in another model of the same particles: springs that broke stay broken, and pins that a program added or moves go on.
+[[nodiscard]] SimulationState continued_in(const Model& next, const Model& before, const SimulationState& state);
 
 }  // namespace sprung

@@ -1,7 +1,5 @@
 #include "simulation/tension.h"
 
-#include <algorithm>
-
 namespace sprung {
 
 Scalars spring_tensions(const Simulator& simulator) {
@@ -15,16 +13,6 @@ Scalars spring_tensions(const Simulator& simulator) {
     if (length == 0.0 || (springs.law(s).tension_only && length <= springs.rest_length[s])) continue;
     const double rate = between.dot(v.col(springs.second[s]) - v.col(springs.first[s])) / length;
     tensions[s] += springs.stiffness[s] * (length - springs.rest_length[s]) + springs.damping[s] * rate;
-  }
-  return tensions;
-}
-
-Scalars particle_tensions(const Simulator& simulator) {
-  const Springs& springs = simulator.network().springs;
-  const Scalars of_springs = spring_tensions(simulator);
-  Scalars tensions = Scalars::Zero(simulator.network().particle_count());
-  for (Index s = 0; s < springs.count(); ++s) {
-    for (const Index i : {springs.first[s], springs.second[s]}) tensions[i] = std::max(tensions[i], of_springs[s]);
   }
   return tensions;
 }

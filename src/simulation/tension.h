@@ -10,7 +10,4 @@ namespace sprung {
 /// Tethers are no springs: what they carry is missing.
 [[nodiscard]] Scalars spring_tensions(const Simulator& simulator);
 
-/// The largest tension of the springs of each particle [N]; 0 without one that pulls.
-[[nodiscard]] Scalars particle_tensions(const Simulator& simulator);
-
 }  // namespace sprung

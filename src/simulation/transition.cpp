@@ -2,7 +2,7 @@
 #include "dynamics/attachments/engagement.h"
 #include "simulation/reaction_record.h"
 #include "simulation/settings/settings_check.h"
-#include "simulation/start/start.h"
+#include "simulation/start/start_check.h"
 #include "simulation/stepper.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void Stepper::correct_positions(double dt) {
   state_.contact.permitted_crossings = constraints().permitted_crossings();
 }
 
-/// Before this, pins take the speed with which they begin, which is no impulse.
+/// Pins set the velocities of their particles before this call, so that these are not recorded as impulses.
 void Stepper::begin_recording() {
   if (!settings().record_forces) return;
   state_.reactions = {.since = time()};
@@ -96,8 +96,8 @@ void Stepper::make_transition(const BeforeTransition& before) {
   finish_transition(before, false);
 }
 
-void Stepper::inherit(const BeforeTransition& before, const Model& former) {
-  state_.steps_per_frame = settings().steps_per_frame;
+void Stepper::adopt(const BeforeTransition& before, const Model& former) {
+  note_settings(settings(), state_);
   if (settings().record_forces != state_.impulses.on()) {
     state_.impulses = {};
     state_.last_impulses = {};
@@ -132,7 +132,7 @@ void Stepper::finish_transition(const BeforeTransition& before, bool restarts) {
   step_length_changed();
 }
 
-/// Particles that fall asleep or wake have no speed. A group that wakes has to come to rest again.
+/// Sets the velocity of particles that fell asleep or woke to 0. A waking group starts a new rest window.
 void Stepper::change_sleep(const BeforeTransition& before) {
   for (Index i = 0; i < network().particle_count(); ++i) {
     if (network().is_asleep(i) == before.activity.is_asleep(i)) continue;
@@ -146,7 +146,7 @@ void Stepper::change_sleep(const BeforeTransition& before) {
   }
 }
 
-/// Lets pins begin and end. A particle that becomes free gets its pin's mean velocity over the last step. Returns whether a pin
+/// Starts and ends pins. A particle that becomes free gets its pin's mean velocity over the last step. Returns whether a pin
 /// changed.
 bool Stepper::change_pins(const BeforeTransition& before) {
   const Points v_before = state_.v;
@@ -183,16 +183,13 @@ void Stepper::keep_handovers() {
 
 void Stepper::restore(const SimulationState& former) {
   state_ = former;
-  const bool has_new_integrator = scratch_.follow(model_, control_, state_);
-  work().pin_paths.register_pins(state_);
-  load();
-  if (has_new_integrator || is_start()) resume_integrator(dt());
+  initialize(scratch_.follow(model_, control_, state_));
 }
 
-void Stepper::enter() {
+void Stepper::initialize(bool is_new) {
   work().pin_paths.register_pins(state_);
   load();
-  resume_integrator(dt());
+  if (is_new || is_start()) resume_integrator(dt());
 }
 
 void Stepper::follow_conditions() {

@@ -2,6 +2,7 @@
 #include "simulation/model.h"
 
 #include "base/error.h"
+#include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/pull_force.h"
 #include "simulation/scenes.h"
 
@@ -104,6 +105,55 @@ TEST(Copy, GoesOnAsItsOriginalAndApartFromIt) {
   EXPECT_EQ(copy.settings().gravity, original.settings().gravity);
 }
 
+/// Scenes with contact: of a cloth with obstacles, of two cloths with each other, and of a rope with itself and the ground.
+std::vector<Simulator> scenes_with_contact(const IntegratorSettings& integrator) {
+  const ContactMaterial rough{.thickness = 0.01, .friction = 0.3};
+  SimulatorSettings settings{.step = 1e-3, .integrator = integrator, .stretch_limit = StretchLimitSettings{.max_stretch = 0.1}};
+  std::vector<Simulator> scenes;
+  Obstacle ball{.name = "ball", .geometry = SphereGeometry{.radius = 0.3}, .material = rough};
+  scenes.emplace_back(cloth(12, 0.35, rough), settings, std::vector{ground(rough), ball});
+  NetworkBuilder cloths;
+  for (const double height : {0.02, 0.1}) {
+    BodyShape shape =
+        make_cloth({.size = {1.0, 1.0}, .resolution = {8, 8}}, {.structural = SpringMaterial{.value = 100.0, .damping = 0.1}});
+    set_total_mass(shape, 0.2);
+    RigidTransform pose = RigidTransform::Identity();
+    pose.linear() = rotation_from_degrees({-90.0, 30.0 * height, 0.0});
+    pose.translation().y() = height;
+    place(shape, pose);
+    cloths.add_body("cloth at " + std::to_string(height), shape, rough, {.others = true});
+  }
+  scenes.emplace_back(cloths.build(), settings, std::vector{ground(rough)});
+  NetworkBuilder ropes;
+  BodyShape rope = make_rope({.points = {{0.0, 0.05, 0.0}, {0.02, 0.6, 0.01}, {-0.02, 1.2, 0.0}}, .particles = 40},
+                             {.structural = SpringMaterial{.value = 100.0, .damping = 0.1}});
+  set_total_mass(rope, 0.1);
+  ropes.add_body("rope", rope, rough, {.self = true});
+  scenes.emplace_back(ropes.build(), settings, std::vector{ground(rough)});
+  return scenes;
+}
+
+TEST(Copy, AgreesBitByBitWithOtherCopiesAndWithARestoredOriginal) {
+  for (const IntegratorSettings& integrator : {IntegratorSettings(VerletSettings()), IntegratorSettings(ImplicitEulerSettings())}) {
+    for (Simulator& original : scenes_with_contact(integrator)) {
+      run(original, 0.4);
+      original.restore(original.state());
+      Simulator first = original;
+      Simulator second = original;
+      Index contacts = 0;
+      for (int k = 0; k < 200; ++k) {
+        original.step();
+        first.step();
+        second.step();
+        contacts += original.contact_count();
+        ASSERT_EQ(first.state(), second.state()) << "step " << k;
+        ASSERT_EQ(first.state(), original.state()) << "step " << k;
+      }
+      EXPECT_GT(contacts, 100);
+    }
+  }
+}
+
 // set_gravity() and set_air() decide until other settings come.
 TEST(ContinueWith, ReplacesGravityAndWindThatWereSetBefore) {
   SimulatorSettings settings{.step = 1e-3, .air_drag = 0.1};
@@ -193,6 +243,51 @@ TEST(State, AnyNumberThatDiffersMakesStatesDiffer) {
   EXPECT_TRUE(differs([](SimulationState& s) { s.reactions.since += 1.0; }));
   EXPECT_TRUE(differs([](SimulationState& s) { s.steering.obstacles.push_back({0, {{0.0, RigidTransform::Identity()}}}); }));
   EXPECT_FALSE(differs([](SimulationState&) {}));
+}
+
+/// Keeps particle 2 at height 0, and takes the momentum for it from particle 0, which a pin holds. Without a state of its own.
+class Lever final : public Constraint {
+ public:
+  explicit Lever(double mass) : mass_(mass) {}
+  double project(const Points& /*before*/, Points& positions, const ImpulseRecorder& recorder) const override {
+    const double off = positions(1, 2);
+    positions(1, 2) = 0.0;
+    if (recorder.on()) recorder.add_to_pinned(0, Vector3(0.0, mass_ * off, 0.0));
+    return std::abs(off) / 1.0e-12;
+  }
+  [[nodiscard]] double residual(const Points& positions) const override { return std::abs(positions(1, 2)) / 1.0e-12; }
+
+ private:
+  double mass_;  ///< of the particle [kg]
+};
+
+// Each records its own impulses.
+TEST(Copy, SharesAConstraintWithItsOriginalInAnotherThread) {
+  BodyShape shape = make_rope({.points = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, .particles = 3},
+                              {.structural = SpringMaterial{.value = 100.0, .damping = 0.1}});
+  set_total_mass(shape, 0.3);
+  NetworkBuilder builder;
+  builder.add_body("rope", shape);
+  builder.pin(0);
+  Simulator original(builder.build(), {.step = 1e-3, .record_forces = true});
+  original.add_constraint(std::make_shared<Lever>(original.network().masses[2]));
+  run(original, 0.1);
+  const Simulator start = original;
+  const auto forces_of = [](Simulator simulator) {
+    std::vector<Vector3> forces;
+    for (int k = 0; k < 500; ++k) {
+      simulator.step();
+      for (const Reaction& reaction : simulator.reactions()) forces.push_back(reaction.force);
+    }
+    return forces;
+  };
+  const std::vector<Vector3> alone = forces_of(start);
+  EXPECT_GT(std::abs(alone.back().y()), 0.0);
+  std::array<std::vector<Vector3>, 4> together;
+  std::vector<std::thread> threads;
+  for (auto& forces : together) threads.emplace_back([&] { forces = forces_of(start); });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& forces : together) EXPECT_EQ(forces, alone);
 }
 
 }  // namespace

@@ -82,6 +82,8 @@ TEST_F(Resume, RefusesAStateThatDoesNotFit) {
       {"state.v: must be finite", [](SimulationState& state) { state.v(1, 0) = kNotANumber; }},
       {"state.x_previous = 3 entries", [](SimulationState& state) { state.x_previous.setZero(3, 3); }},
       {"state.frame = -1", [](SimulationState& state) { state.frame = -1; }},
+      {"state.step_length = 0.5", [](SimulationState& state) { state.step_length = 0.5; }},
+      {"state.integrator = RungeKutta4Settings", [](SimulationState& state) { state.integrator = 4; }},
       {"state.steps_per_frame = 7", [](SimulationState& state) { state.steps_per_frame = 7; }},
       {"state.step_in_frame = 1", [](SimulationState& state) { state.step_in_frame = 1; }},
       {"state.substeps = 0", [](SimulationState& state) { state.substeps = 0; }},
@@ -108,7 +110,7 @@ TEST_F(Resume, RefusesAStateThatDoesNotFit) {
        }},
       {"state.rest.sleepers = 9 entries", [](SimulationState& state) { state.rest.sleepers.assign(9, 0); }},
       {"state.rest.histories = 1 entries", [](SimulationState& state) { state.rest.histories.resize(1); }},
-      {"state.rest.x_at_begin = 1 entries", [](SimulationState& state) { state.rest.x_at_begin.setZero(3, 1); }},
+      {"state.rest.x_at_frame = 1 entries", [](SimulationState& state) { state.rest.x_at_frame.setZero(3, 1); }},
       {"state.springs.unloading = 1 entries", [](SimulationState& state) { state.springs.unloading.resize(1); }},
       {"state.springs.unloading",
        [](SimulationState& state) {

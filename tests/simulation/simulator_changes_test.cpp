@@ -513,7 +513,7 @@ TEST(SimulatorChanges, ElementsThatAreNotFiniteOrOnNoParticleAreRefused) {
       simulator.add_force(std::make_shared<OneElement>(element));
       ADD_FAILURE() << "was added";
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("one element.elements[0]: must be on particles that exist"));
+      EXPECT_THAT(error.what(), HasSubstr("added force \"one element\".append_elements()[0]"));
     }
   }
 }

@@ -25,7 +25,7 @@ struct Kinematics {
   double time = 0.0;  ///< [s]
 };
 
-/// What acts from outside on all particles, and may change between two steps.
+/// External conditions that may change between two steps.
 struct Conditions {
   const Vector3& gravity;  ///< [m/s^2]
   const Wind& wind;
@@ -68,13 +68,14 @@ class Force {
   /// Prepares the force for evaluations at `time` [s]. Not thread-safe. Default: does nothing.
   virtual void prepare(double time);
 
-  /// Takes over new conditions. Default: does nothing.
+  /// Sets new conditions. Default: does nothing.
   virtual void follow(const Conditions& conditions);
 
   /// The steps of explicit schemes are `dt` [s] long from now on. Default: does nothing.
   virtual void set_step(double dt);
 
-  /// The particles to which the force is applied, now or later; none: any. Those of an added force stay awake. Default: any.
+  /// The particles to which the force is applied, now or later; none: any. Those of an added force stay awake. Simulator::add_force
+  /// asks for them: call Simulator::wake() after they changed. Default: any.
   [[nodiscard]] virtual std::optional<std::vector<Index>> touched() const;
 
   /// Whether `add` adds the same force at all positions, velocities and times. Default: no.

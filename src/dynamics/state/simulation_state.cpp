@@ -10,14 +10,13 @@
 namespace sprung {
 
 bool Steering::operator==(const Steering& other) const {
-  const auto alike = [](const Pin& a, const Pin& b) { return a.name == b.name && a.particles == b.particles && a.from == b.from; };
-  return pins == other.pins && obstacles == other.obstacles && std::ranges::equal(added_pins, other.added_pins, alike);
+  return pins == other.pins && obstacles == other.obstacles && std::ranges::equal(added_pins, other.added_pins, are_alike);
 }
 
 bool SimulationState::operator==(const SimulationState& other) const {
   const auto bytes = [](const SimulationState& state) {
     std::string all;
-    StateBytes([&](const void* data, std::size_t size) { all.append(static_cast<const char*>(data), size); }).pass(state);
+    StateBytes([&](const void* data, std::size_t size) { all.append(static_cast<const char*>(data), size); }).write(state);
     return all;
   };
   return bytes(*this) == bytes(other);
@@ -29,7 +28,7 @@ std::uint64_t hash(const SimulationState& state) {
     for (const char byte : std::string_view(static_cast<const char*>(data), size)) {
       hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
     }
-  }).pass(state);
+  }).write(state);
   return hash;
 }
 

@@ -112,7 +112,7 @@ struct PlannerMemory {
   Index retry_infeasible = 0;  ///< exception: steps with more infeasible particles than this are repeated despite the wait
 };
 
-/// The impulses in the present interval of records, see ReactionRecord.
+/// The impulses in the present interval of records, see reaction_record.h.
 struct ReactionMemory {
   std::map<std::string, Vector3> impulses{};  ///< of attachments, and of pins before the last change of pins, by name [N s]
   double since = 0.0;                         ///< begin of the interval [s]
@@ -121,13 +121,13 @@ struct ReactionMemory {
 /// A pin or an obstacle that a program moves.
 struct SteeredMotion {
   std::size_t number = 0;  ///< of the pin or obstacle
-  /// When it was first moved, when pins took particles since, at the begin of the last step in which it moves, and at its end.
+  /// Poses at: the first move, each later grip of particles, and the begin and end of the last steered step.
   std::vector<TimedPose> poses{};
 
   [[nodiscard]] bool operator==(const SteeredMotion&) const = default;
 };
 
-/// What a program did to pins and obstacles.
+/// Pins that a program added, and motions of pins and obstacles that it steers.
 struct Steering {
   std::vector<Pin> added_pins{};           ///< numbered after those of the model
   std::vector<SteeredMotion> pins{};       ///< by number
@@ -136,13 +136,17 @@ struct Steering {
   [[nodiscard]] bool operator==(const Steering& other) const;
 };
 
+/// Do not edit x and v alone: Verlet moves by x - x_previous, and friction, rest and Verlet's start refer to positions too. Change
+/// all of x, v and x_previous together: x_previous = x - v dt.
 struct SimulationState {
-  std::int64_t step = 0;    ///< number of completed steps
-  std::int64_t frame = 0;   ///< number of completed frames
-  int step_in_frame = 0;    ///< number of completed steps of the current frame
-  int steps_per_frame = 1;  ///< number of equal steps of a frame; it may change at the end of a frame
-  int substeps = 1;         ///< number of equal substeps of the current step
-  int substep = 0;          ///< number of completed substeps of the current step
+  std::int64_t step = 0;       ///< number of completed steps
+  std::int64_t frame = 0;      ///< number of completed frames
+  int step_in_frame = 0;       ///< number of completed steps of the current frame
+  int steps_per_frame = 1;     ///< number of equal steps of a frame; it may change at the end of a frame
+  int substeps = 1;            ///< number of equal substeps of the current step
+  int substep = 0;             ///< number of completed substeps of the current step
+  double step_length = 0.0;    ///< of the simulator that made it [s]
+  std::size_t integrator = 0;  ///< of that simulator: number in IntegratorSettings
   PlannerMemory planner{};
   Points x;           ///< positions [m], 3 x n
   Points v;           ///< velocities [m/s], 3 x n
@@ -167,7 +171,7 @@ struct SimulationState {
 };
 
 /// A number that states share if they are equal bit by bit, and else almost never (FNV-1a; Fowler, Noll and Vo 1991). The same on
-/// every machine with the same byte order.
+/// every machine with the same byte order. The cost grows with the size of the state: about a millisecond per megabyte.
 [[nodiscard]] std::uint64_t hash(const SimulationState& state);
 
 /// The number of steps of the present length from time 0 to the begin of the current step. Times are this number, or a fraction

@@ -3,6 +3,7 @@
 #include "base/format.h"
 #include "base/problem_list.h"
 #include "geometry/mesh/topology.h"
+#include "geometry/motion/motion_check.h"
 #include "network/bodies/shape_parts.h"
 
 #include <algorithm>
@@ -114,6 +115,9 @@ BodyDrag drag_in_air(const BodyShape& shape, double diameter) {
 }
 
 void place(BodyShape& shape, const RigidTransform& pose, const Vector3& velocity) {
+  ProblemList problems;
+  check_pose("place", pose, problems);
+  problems.throw_if_any();
   for (Vector3& position : shape.positions) position = pose * position;
   for (Vector3& own : shape.velocities) own = pose.linear() * own + velocity;
 }

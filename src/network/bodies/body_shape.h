@@ -96,9 +96,9 @@ inline constexpr Index kMaxBodyParticles = Index{1} << 27;
 /// shape of a rope with corners is straight. `length` [m] > 0 is the rest length of the whole rope; by default, that of the
 /// polyline.
 struct RopeShape {
-  std::vector<Vector3> points;
-  std::optional<Index> particles;
-  std::optional<double> length;
+  std::vector<Vector3> points{};
+  std::optional<Index> particles{};
+  std::optional<double> length{};
 };
 
 /// A rectangle in the x-y plane, centred; x runs fastest. Structural springs lie along the sides of the cells, shear springs along
@@ -173,7 +173,8 @@ void set_density(BodyShape& shape, double density);
 /// back feel the air, then has 1.0 (Hoerner: 1.05), a sphere 0.5 (0.47). Along a face, each side has the skin friction of a plate.
 [[nodiscard]] BodyDrag drag_in_air(const BodyShape& shape, double diameter);
 
-/// Rotates and moves a body, and adds a velocity [m/s]. The transform has no scale: make the shape in its final size.
+/// Rotates and moves a body, and adds a velocity [m/s]. Throws InputError if the pose is not a rotation and a translation: make the
+/// shape in its final size.
 void place(BodyShape& shape, const RigidTransform& pose, const Vector3& velocity = Vector3::Zero());
 
 }  // namespace sprung

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -55,6 +56,12 @@ void change_pins(const std::vector<Pin>& pins, double time, Activity& activity) 
   }
 }
 
+Activity first_activity(const SpringNetwork& network) {
+  Activity activity = all_free(network);
+  change_pins(network.pins, std::numeric_limits<double>::min(), activity);
+  return activity;
+}
+
 std::vector<Index> held_particles(const SpringNetwork& network, std::size_t pin) {
   std::vector<Index> held;
   std::ranges::copy_if(network.pins[pin].particles, std::back_inserter(held),
@@ -68,13 +75,6 @@ void set_activity(Activity activity, SpringNetwork& network) {
     network.inverse_masses[i] = is_free ? 1.0 / network.masses[i] : 0.0;
   }
   network.activity = std::move(activity);
-}
-
-void set_asleep(std::vector<char> asleep, SpringNetwork& network) {
-  if (std::ranges::count(asleep, 0) == static_cast<std::ptrdiff_t>(asleep.size())) asleep.clear();
-  Activity activity = network.activity;
-  activity.asleep = std::move(asleep);
-  set_activity(std::move(activity), network);
 }
 
 bool is_asleep(const SpringNetwork& network, const Body& body) {

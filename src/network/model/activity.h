@@ -53,14 +53,14 @@ struct Activity {
 /// another pin holds stays with that pin.
 void change_pins(const std::vector<Pin>& pins, double time, Activity& activity);
 
+/// The activity at time 0: the pins that begin then hold their particles, and none sleeps.
+[[nodiscard]] Activity first_activity(const SpringNetwork& network);
+
 /// The particles that pin number `pin` holds, in the order of Pin::particles.
 [[nodiscard]] std::vector<Index> held_particles(const SpringNetwork& network, std::size_t pin);
 
 /// Sets the activity and the inverse masses of a network: 0 of particles that are pinned or sleep.
 void set_activity(Activity activity, SpringNetwork& network);
-
-/// Lets particle i sleep if asleep[i] is not 0. An empty vector wakes all.
-void set_asleep(std::vector<char> asleep, SpringNetwork& network);
 
 /// Whether all particles of a body sleep. True of a body without particles.
 [[nodiscard]] bool is_asleep(const SpringNetwork& network, const Body& body);

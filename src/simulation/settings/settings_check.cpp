@@ -1,8 +1,8 @@
 #include "simulation/settings/settings_check.h"
 
-#include "base/error.h"
 #include "base/format.h"
 #include "base/grouped_warnings.h"
+#include "base/problem_list.h"
 #include "network/model/spring_network.h"
 
 #include <algorithm>
@@ -17,66 +17,58 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-class Rules {
- public:
-  void require_between(const std::string& key, double value, double least, double most) {
-    if (std::isfinite(value) && value >= least && value <= most) return;
-    const std::string rule = most == kInfinity ? "must be a finite number, at least " + format_number(least)
-                                               : "must be from " + format_number(least) + " to " + format_number(most);
-    problems_.push_back({.key = key, .value = format_number(value), .rule = rule});
-  }
+void require_between(const std::string& key, double value, double least, double most, ProblemList& problems) {
+  if (std::isfinite(value) && value >= least && value <= most) return;
+  problems.add(key, format_number(value),
+               most == kInfinity ? "must be a finite number, at least " + format_number(least)
+                                 : "must be from " + format_number(least) + " to " + format_number(most),
+               "");
+}
 
-  void require_finite(const std::string& key, const Vector3& value) {
-    if (value.allFinite()) return;
-    problems_.push_back({.key = key, .rule = "must have three finite components"});
-  }
-
-  void require_wind(const Wind& wind) {
-    const std::vector<WindKeyframe>& keys = wind.keyframes();
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-      const std::string key = keys.size() == 1 ? "wind" : "wind.keyframes[" + std::to_string(k) + "]";
-      require_finite(key, keys[k].velocity);
-      if (k == 0 || keys[k].time > keys[k - 1].time) continue;
-      problems_.push_back(
-          {.key = key + ".time", .value = format_number(keys[k].time), .rule = "must be later than the keyframe before it"});
-    }
-    if (!wind.gusts()) return;
-    require_between("wind.gusts.speed", wind.gusts()->speed, 0.0, kInfinity);
-    require_between("wind.gusts.length", wind.gusts()->length, std::numeric_limits<double>::min(), kInfinity);
-  }
-
-  void throw_if_broken() {
-    if (!problems_.empty()) throw InputError(std::move(problems_));
-  }
-
- private:
-  std::vector<Problem> problems_;
-};
+void require_finite(const std::string& key, const Vector3& value, ProblemList& problems) {
+  if (!value.allFinite()) problems.add(key, "", "must have three finite components", "");
+}
 
 }  // namespace
 
+void check_wind(const Wind& wind, ProblemList& problems) {
+  const std::vector<WindKeyframe>& keys = wind.keyframes();
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const std::string key = keys.size() == 1 ? "wind" : entry_key("wind.keyframes", k);
+    require_finite(key, keys[k].velocity, problems);
+    if (k == 0 || keys[k].time > keys[k - 1].time) continue;
+    problems.add(key + ".time", format_number(keys[k].time), "must be later than the keyframe before it", "");
+  }
+  if (!wind.gusts()) return;
+  require_between("wind.gusts.speed", wind.gusts()->speed, 0.0, kInfinity, problems);
+  require_between("wind.gusts.length", wind.gusts()->length, std::numeric_limits<double>::min(), kInfinity, problems);
+}
+
 SimulatorSettings checked_settings(SimulatorSettings settings) {
-  Rules rules;
-  rules.require_finite("gravity", settings.gravity);
-  rules.require_between("air_drag", settings.air_drag, 0.0, kInfinity);
-  rules.require_between("air_surface.normal", settings.air_surface.normal, 0.0, kInfinity);
-  rules.require_between("air_surface.tangential", settings.air_surface.tangential, 0.0, kInfinity);
-  rules.require_wind(settings.wind);
+  ProblemList problems;
+  const auto require_within = [&](const std::string& key, double value, double least, double most) {
+    require_between(key, value, least, most, problems);
+  };
+  require_finite("gravity", settings.gravity, problems);
+  require_within("air_drag", settings.air_drag, 0.0, kInfinity);
+  require_within("air_surface.normal", settings.air_surface.normal, 0.0, kInfinity);
+  require_within("air_surface.tangential", settings.air_surface.tangential, 0.0, kInfinity);
+  check_wind(settings.wind, problems);
   if (const auto* verlet = std::get_if<VerletSettings>(&settings.integrator)) {
-    rules.require_between("integrator.damping", verlet->damping, 0.0, 1.0);
-    rules.require_between("integrator.damping_rate", verlet->damping_rate, 0.0, kInfinity);
+    require_within("integrator.damping", verlet->damping, 0.0, 1.0);
+    require_within("integrator.damping_rate", verlet->damping_rate, 0.0, kInfinity);
   }
   if (const auto& limit = settings.stretch_limit) {
-    rules.require_between("stretch_limit.max_stretch", limit->max_stretch, 0.0, kInfinity);
-    rules.require_between("stretch_limit.max_compression", limit->max_compression, 0.0, 1.0);
-    rules.require_between("stretch_limit.iterations", limit->iterations, 1.0, kInfinity);
-    rules.require_between("stretch_limit.tolerance", limit->tolerance, 0.0, kInfinity);
+    require_within("stretch_limit.max_stretch", limit->max_stretch, 0.0, kInfinity);
+    require_within("stretch_limit.max_compression", limit->max_compression, 0.0, 1.0);
+    require_within("stretch_limit.iterations", limit->iterations, 1.0, kInfinity);
+    require_within("stretch_limit.tolerance", limit->tolerance, 0.0, kInfinity);
   }
-  rules.require_between("steps_per_frame", settings.steps_per_frame, 1.0, kInfinity);
-  rules.require_between("max_substeps", settings.max_substeps, 1.0, kMaxSubsteps);
-  rules.require_between("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
-  rules.require_between("contact.damping", settings.contact.damping, 0.0, kInfinity);
-  rules.throw_if_broken();
+  require_within("steps_per_frame", settings.steps_per_frame, 1.0, kInfinity);
+  require_within("max_substeps", settings.max_substeps, 1.0, kMaxSubsteps);
+  require_within("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
+  require_within("contact.damping", settings.contact.damping, 0.0, kInfinity);
+  problems.throw_if_any();
   return settings;
 }
 

@@ -34,8 +34,10 @@ enum class StabilityCheck : std::uint8_t { refuse, warn };
 inline constexpr int kMaxSubsteps = 1 << 16;
 
 struct SimulatorSettings {
-  double step = 1.0e-3;              ///< dt [s]
-  int steps_per_frame = 1;           ///< number of steps of a frame, >= 1; the step may change at its end
+  double step = 1.0e-3;  ///< dt [s]
+  /// Number of steps of a frame, >= 1. A frame ends where state().step_in_frame == 0. The step may change there, the duration of a
+  /// frame never: to lengthen the step later, begin with several steps per frame.
+  int steps_per_frame = 1;
   double frame_rate = 0.0;           ///< [1/s]; messages advise steps that divide a frame; 0: any step
   Vector3 gravity{0.0, -9.81, 0.0};  ///< [m/s^2]
   double air_drag = 0.0;             ///< by length of ropes [kg/(m s)], by area of surfaces [kg/(m^2 s)]

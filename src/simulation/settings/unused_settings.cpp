@@ -1,4 +1,4 @@
-#include "simulation/settings/unused_settings.h"
+#include "simulation/settings/settings_check.h"
 
 #include "base/format.h"
 #include "base/grouped_warnings.h"

@@ -1,5 +1,6 @@
 #include "simulation/sleep/sleep_group.h"
 
+#include "base/sort_unique.h"
 #include "collision/core/block_bounds.h"
 
 #include <algorithm>

@@ -36,12 +36,6 @@ struct SleepGroups {
   void join(Index particle, Index other);
 };
 
-/// Sorts ascending, each once.
-void sort_unique(auto& items) {
-  std::ranges::sort(items);
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
-
 /// Whether each group is marked, or in a pair with a marked one.
 [[nodiscard]] std::vector<char> with_neighbours(const std::vector<char>& marked, const std::vector<GroupPair>& pairs);
 

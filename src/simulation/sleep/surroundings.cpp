@@ -1,5 +1,6 @@
 #include "simulation/sleep/surroundings.h"
 
+#include "base/sort_unique.h"
 #include "collision/core/block_bounds.h"
 #include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/attachments/attachments.h"

@@ -1,4 +1,4 @@
-#include "simulation/start/layers.h"
+#include "simulation/start/push_out.h"
 
 #include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/obstacles/obstacle_intersections.h"

@@ -1,11 +1,12 @@
 #include "simulation/start/push_out.h"
 
 #include "collision/obstacles/obstacle_intersections.h"
-#include "simulation/start/approach.h"
-#include "simulation/start/layers.h"
+#include "dynamics/contact/collision_surface_builder.h"
+#include "dynamics/contact/contact_projection.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <vector>
@@ -131,6 +132,93 @@ class FreePosition {
   bool stays_whole_;
   std::vector<char> movable_;  ///< per particle: 1 for unpinned particles of the body
 };
+
+// A body without segments and faces has no element size: it moves in so many strides.
+constexpr int kStridesOfParticles = 8;
+
+// Further strides, for particles that slide along an obstacle and so take a longer path.
+constexpr int kMoreStrides = 32;
+
+// Lower bound of a stopped particle's stride, as a fraction of a full stride.
+constexpr double kShortest = 1.0 / 64.0;
+
+// The approach ends when no particle moves by this fraction of a stride.
+constexpr double kArrived = 1.0e-3;
+
+// Afterwards, contact is solved until no particle moves by this fraction of a stride, at most so many times.
+constexpr double kSettled = 1.0e-6;
+constexpr int kMaxSettling = 16;
+
+SpringNetwork only_moving(SpringNetwork network, Index body) {
+  const Body& own = network.bodies[static_cast<std::size_t>(body)];
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (i < own.first_particle || i >= own.first_particle + own.particle_count) network.inverse_masses[i] = 0.0;
+  }
+  for (Body& each : network.bodies) each.material.friction = each.material.static_friction = 0.0;
+  return network;
+}
+
+/// Moves a body from an intersection-free position towards the wanted one, as far as obstacles and other bodies permit.
+class Approach {
+ public:
+  /// Only this body moves. Keeps a reference to the frame.
+  Approach(const SpringNetwork& network, const ObstacleFrame& obstacles, Index body);
+
+  /// Positions [m] after an approach from `free`, where the body intersects nothing, towards `wanted`. The body moves in strides of
+  /// its element size. Particles that touch a surface slide along it; the others reach their wanted positions exactly.
+  [[nodiscard]] Points run(const Points& free, const Points& wanted);
+
+ private:
+  /// Moves `x` to `advanced` under contact and truncation. Returns the largest displacement of a particle [m].
+  double stride(Points& x, const Points& advanced);
+
+  SpringNetwork network_;  ///< without friction, all other bodies pinned
+  double length_ = 0.0;    ///< of a stride [m]; 0 for a body without segments and faces
+  const ObstacleFrame& obstacles_;
+  ContactProjection contacts_;
+};
+
+Approach::Approach(const SpringNetwork& network, const ObstacleFrame& obstacles, Index body)
+    : network_(only_moving(network, body)),
+      length_(contact_surface(network_).element_size[static_cast<std::size_t>(body)]),
+      obstacles_(obstacles),
+      contacts_(network_, obstacles.set()) {}
+
+double Approach::stride(Points& x, const Points& advanced) {
+  const Points before = x;
+  x = advanced;
+  const Points none = Points::Zero(3, x.cols());
+  const Slip no_slip{.displacement = none, .obstacle = std::vector<Index>(static_cast<std::size_t>(x.cols()), kNone)};
+  const StepMotion motion{before, none, no_slip, advanced, 1.0};
+  contacts_.find(obstacles_, motion);
+  contacts_.push_out(x);
+  contacts_.truncate(obstacles_, motion, x);
+  return (x - before).colwise().norm().maxCoeff();
+}
+
+Points Approach::run(const Points& free, const Points& wanted) {
+  const double path = (wanted - free).colwise().norm().maxCoeff();
+  const double longest = length_ > 0.0 ? length_ : path / kStridesOfParticles;
+  const int strides = static_cast<int>(std::ceil(path / longest)) + kMoreStrides;
+  Scalars lengths = Scalars::Constant(free.cols(), longest);
+  Points x = free;
+  for (int k = 0; k < strides; ++k) {
+    const Points before = x;
+    Points advanced = x;
+    for (Index i = 0; i < static_cast<Index>(x.cols()); ++i) {
+      const Vector3 left = wanted.col(i) - x.col(i);
+      const double distance = left.norm();
+      advanced.col(i) = distance <= lengths[i] ? Vector3(wanted.col(i)) : Vector3(x.col(i) + lengths[i] / distance * left);
+    }
+    if (stride(x, advanced) <= kArrived * longest) break;
+    // A stopped particle gets a short stride: the safe region of a long displacement spans much of an obstacle, at high cost.
+    lengths = (2.0 * (x - before).colwise().norm().transpose()).cwiseMax(kShortest * longest).cwiseMin(longest);
+  }
+  for (int k = 0; k < kMaxSettling; ++k) {
+    if (stride(x, Points(x)) <= kSettled * longest) break;
+  }
+  return x;
+}
 
 /// Bodies by their claim to stay.
 struct Ranks {

@@ -1,5 +1,3 @@
-#include "simulation/start/start.h"
-
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/contact/collision_surface_builder.h"

@@ -1,4 +1,4 @@
-// Finds and describes intersections at the start.
+// The positions at time 0: finds, describes and removes intersections.
 #pragma once
 
 #include "base/error.h"
@@ -7,6 +7,7 @@
 #include "collision/surface/collision_surface.h"
 #include "collision/surface/self_intersections.h"
 #include "network/model/spring_network.h"
+#include "simulation/settings/simulator_settings.h"
 
 #include <string>
 #include <vector>
@@ -33,5 +34,18 @@ struct StartIntersections {
 [[nodiscard]] std::vector<Problem> start_problems(const StartIntersections& found, const SpringNetwork& network,
                                                   const ObstacleFrame& obstacles, const CollisionSurface& surface,
                                                   const Points& positions, const std::string& remedy);
+
+/// Positions at time 0 [m], and warnings about them. Notes tell what "push_out" moved, as the settings ask.
+struct Start {
+  Points positions;
+  std::vector<std::string> warnings{};
+  std::vector<std::string> notes{};
+};
+
+/// Returns `positions` [m] if nothing intersects at the end of the frame's interval. With `contact.start` push_out, bodies
+/// that intersect are moved by push_out(). Warns about bodies that start deep within their gap to an obstacle. Throws InputError
+/// if intersections remain: one problem for each body and obstacle and each pair of bodies, with elements and positions.
+[[nodiscard]] Start find_start(const SpringNetwork& network, const ObstacleFrame& obstacles, const ContactSettings& contact,
+                               const Points& positions);
 
 }  // namespace sprung

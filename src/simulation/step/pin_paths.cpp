@@ -26,9 +26,9 @@ const MeshSequence* sequence_of(const Obstacle& obstacle) {
   return obstacle.deforms() ? std::get<SequenceGeometry>(obstacle.geometry).sequence.get() : nullptr;
 }
 
-const PinGrip* find(const std::vector<PinGrip>& anchors, Index particle) {
-  const auto found = std::ranges::lower_bound(anchors, particle, {}, &PinGrip::particle);
-  return found != anchors.end() && found->particle == particle ? &*found : nullptr;
+const PinGrip* find(const std::vector<PinGrip>& grips, Index particle) {
+  const auto found = std::ranges::lower_bound(grips, particle, {}, &PinGrip::particle);
+  return found != grips.end() && found->particle == particle ? &*found : nullptr;
 }
 
 }  // namespace
@@ -87,19 +87,19 @@ bool PinPaths::register_pins(SimulationState& state) {
   bool is_new = false;
   for (Path& path : paths_) {
     path.particles.clear();
-    if (!path.needs_anchors()) {
+    if (!path.needs_grips()) {
       const std::optional<double> begin = path.obstacle != nullptr ? std::optional(0.0) : std::nullopt;
       for (const Index i : path.held) path.particles.push_back({i, begin, network_.positions.col(i), {}});
       continue;
     }
-    for (const PinGrip& anchor : anchors_of(path, state, is_new)) {
-      Held held{anchor.particle, anchor.time, anchor.position, {}};
+    for (const PinGrip& grip : grips_of(path, state, is_new)) {
+      Held held{grip.particle, grip.time, grip.position, {}};
       if (path.sequence != nullptr) {
-        const double time = anchor.time;
-        held.surface = anchored(*path.sequence, anchor.triangle, time, path.pose(time).inverse() * anchor.position);
+        const double time = grip.time;
+        held.surface = anchored(*path.sequence, grip.triangle, time, path.pose(time).inverse() * grip.position);
       }
       path.particles.push_back(held);
-      all.push_back(anchor);
+      all.push_back(grip);
     }
   }
   std::ranges::sort(all, {}, &PinGrip::particle);
@@ -108,32 +108,32 @@ bool PinPaths::register_pins(SimulationState& state) {
 }
 
 /// Those of the state that this pin made, and new ones for its other particles.
-std::vector<PinGrip> PinPaths::anchors_of(const Path& path, const SimulationState& state, bool& is_new) const {
+std::vector<PinGrip> PinPaths::grips_of(const Path& path, const SimulationState& state, bool& is_new) const {
   const double from = path.pin->from;
   const std::vector<TimedPose>& steered = path.motion().poses;
   const bool later = from > 0.0 || !steered.empty();
-  std::vector<PinGrip> anchors;
+  std::vector<PinGrip> grips;
   std::vector<std::size_t> added;
   std::vector<Vector3> points;  // of those, in the obstacle's frame
   for (const Index i : path.held) {
     const PinGrip* known = find(state.grips, i);
     if (known != nullptr && known->from == from && (steered.empty() || known->time >= steered.front().time)) {
-      anchors.push_back(*known);
+      grips.push_back(*known);
       continue;
     }
     const double time = later ? steps_done(state) * step_length_ : 0.0;
     const Vector3 position = later ? state.x.col(i) : network_.positions.col(i);
-    added.push_back(anchors.size());
+    added.push_back(grips.size());
     points.push_back(path.pose(time).inverse() * position);
-    anchors.push_back({.particle = i, .from = from, .time = time, .position = position});
+    grips.push_back({.particle = i, .from = from, .time = time, .position = position});
   }
-  if (added.empty()) return anchors;
+  if (added.empty()) return grips;
   is_new = true;
-  if (path.sequence == nullptr) return anchors;
-  const double time = anchors[added.front()].time;
+  if (path.sequence == nullptr) return grips;
+  const double time = grips[added.front()].time;
   const std::vector<Index> triangles = nearest_triangles(*path.sequence, time, points);
-  for (std::size_t k = 0; k < added.size(); ++k) anchors[added[k]].triangle = triangles[k];
-  return anchors;
+  for (std::size_t k = 0; k < added.size(); ++k) grips[added[k]].triangle = triangles[k];
+  return grips;
 }
 
 double PinPaths::move(double time, double dt, SimulationState& state) const {

@@ -21,7 +21,7 @@ class PinPaths {
   /// not exist. `step_length` [s] is that of the simulation.
   PinPaths(const SpringNetwork& network, const std::vector<Obstacle>& obstacles, double step_length);
 
-  /// Records where pins that have begun, or that a program moves for the first time, have their particles, and drops the anchors of
+  /// Records where pins that have begun, or that a program moves for the first time, have their particles, and drops the grips of
   /// other pins. Call it after pins or their motions changed. Returns whether anything is new.
   bool register_pins(SimulationState& state);
 
@@ -47,14 +47,14 @@ class PinPaths {
     std::vector<Held> particles{};
 
     [[nodiscard]] const Motion& motion() const { return obstacle != nullptr ? obstacle->motion : pin->motion; }
-    [[nodiscard]] bool needs_anchors() const { return pin->from > 0.0 || sequence != nullptr || !motion().poses.empty(); }
+    [[nodiscard]] bool needs_grips() const { return pin->from > 0.0 || sequence != nullptr || !motion().poses.empty(); }
     [[nodiscard]] RigidTransform origin() const;
     [[nodiscard]] RigidTransform pose(double time) const;
   };
   class Placing;
 
   void find_paths();
-  std::vector<PinGrip> anchors_of(const Path& path, const SimulationState& state, bool& is_new) const;
+  std::vector<PinGrip> grips_of(const Path& path, const SimulationState& state, bool& is_new) const;
 
   const SpringNetwork& network_;
   const std::vector<Obstacle>& obstacles_;

@@ -159,7 +159,8 @@ Problem unstable_step(const SimulatorSettings& settings, const SpectralBounds& b
           .value = format_number(settings.step),
           .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable_step(settings.integrator, bounds)) +
                   " s, bounded by " + bounds.strictest,
-          .remedy = "use " + advise_step(settings, bounds).text + "; \"stability\": \"warn\" runs it nevertheless"};
+          .remedy = "use " + advise_step(settings, bounds).text +
+                    "; \"stability\": \"warn\" (StabilityCheck::warn) runs it nevertheless"};
 }
 
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {

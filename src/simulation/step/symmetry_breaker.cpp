@@ -1,6 +1,7 @@
 #include "simulation/step/symmetry_breaker.h"
 
 #include "base/random.h"
+#include "base/sort_unique.h"
 #include "geometry/mesh/union_find.h"
 
 #include <algorithm>
@@ -157,8 +158,7 @@ void SymmetryBreaker::push(const Piece& piece, const Flat& flat, double dt, cons
     if ((state.x.col(a) - state.x.col(b)).norm() >= (1.0 - kCompression) * springs.rest_length[s]) continue;
     ends.insert(ends.end(), {a, b});
   }
-  std::ranges::sort(ends);
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  sort_unique(ends);
   for (const Index i : ends) {
     if (network_.is_fixed(i)) continue;
     state.v.col(i) += kPush * piece.mean_length / dt * direction_across(flat, i);

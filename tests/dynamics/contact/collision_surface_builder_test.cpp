@@ -2,6 +2,7 @@
 
 #include "dynamics/networks.h"
 #include "network/model/activity.h"
+#include "network/set_asleep.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

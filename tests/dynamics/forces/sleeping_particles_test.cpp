@@ -5,6 +5,7 @@
 #include "dynamics/forces/spring_force.h"
 #include "dynamics/forces/surface_air_force.h"
 #include "network/network_builder.h"
+#include "network/set_asleep.h"
 
 #include <gtest/gtest.h>
 

@@ -115,5 +115,19 @@ TEST(Solid, RejectsInvalidSolids) {
               ElementsAre("springs.bend.stiffness"));
 }
 
+TEST(Place, TakesARotationAndATranslationAlone) {
+  BodyShape shape = make_solid({}, {});
+  const std::vector<Vector3> before = shape.positions;
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() *= 2.0;
+  EXPECT_THROW(place(shape, pose), InputError);
+  pose.linear() = Vector3(1.0, 1.0, -1.0).asDiagonal();
+  EXPECT_THROW(place(shape, pose), InputError);
+  EXPECT_EQ(shape.positions, before);
+  pose.linear() = rotation_from_degrees({10.0, 20.0, 30.0});
+  place(shape, pose);
+  EXPECT_EQ(shape.positions.front(), pose * before.front());
+}
+
 }  // namespace
 }  // namespace sprung

@@ -1,6 +1,7 @@
 #include "network/model/activity.h"
 
 #include "network/network_builder.h"
+#include "network/set_asleep.h"
 
 #include <gtest/gtest.h>
 

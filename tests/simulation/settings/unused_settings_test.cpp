@@ -1,4 +1,4 @@
-#include "simulation/settings/unused_settings.h"
+#include "simulation/settings/settings_check.h"
 
 #include "simulation/scenes.h"
 

@@ -1,6 +1,7 @@
 // What counts as rest, by positions and velocities alone.
 #include "simulation/sleep/rest_detector.h"
 
+#include "network/set_asleep.h"
 #include "simulation/scenes.h"
 #include "simulation/sleep/surroundings.h"
 
