@@ -29,7 +29,7 @@ class Magnet final : public sprung::Force {
 int main() {
   sprung::SpringMaterials springs;
   springs.structural = sprung::SpringMaterial{.value = 500.0, .damping = 0.5};  // [N/m], [N s/m]
-  sprung::BodyShape chain = sprung::make_rope({.points = {{0, 0, 0}, {0, -1, 0}}, .particles = 21, .length = {}}, springs);
+  sprung::BodyShape chain = sprung::make_rope({.points = {{0, 0, 0}, {0, -1, 0}}, .particles = 21}, springs);
   sprung::set_total_mass(chain, 0.1);
   sprung::NetworkBuilder builder;
   builder.add_body("chain", chain);

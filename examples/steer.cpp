@@ -4,6 +4,7 @@
 #include "simulation/simulator.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <vector>
 
@@ -14,8 +15,8 @@ constexpr double kStep = 0.0004;  // [s]
 /// The ground touches those of the bottom.
 void move(sprung::Simulator& gripper, const Vector3& left, const Vector3& right, double seconds, long enough = 1000) {
   const auto is_high = [&](sprung::Index i) { return gripper.positions()(1, i) > 0.02; };
-  const double end = gripper.time() + seconds;
-  while (gripper.time() < end && std::ranges::count_if(gripper.contact_particles(), is_high) < enough) {
+  const long steps = std::lround(seconds / kStep);
+  for (long step = 0; step < steps && std::ranges::count_if(gripper.contact_particles(), is_high) < enough; ++step) {
     for (const std::size_t finger : {0U, 1U}) {
       sprung::RigidTransform pose = gripper.obstacle_pose(finger);
       pose.translation() += kStep * (finger == 0 ? left : right);
@@ -32,7 +33,7 @@ int main() {
       sprung::make_solid({.size = {0.1, 0.1, 0.1}, .resolution = {5, 5, 5}}, {.structural = soft, .shear = soft});
   sprung::set_total_mass(cube, 0.1);
   sprung::place(cube, sprung::RigidTransform(Eigen::Translation3d(0.0, 0.054, 0.0)));
-  const sprung::ContactMaterial rough{.thickness = 0.002, .friction = 0.8, .static_friction = 0.8};
+  const sprung::ContactMaterial rough{.thickness = 0.002, .friction = 0.8};
   sprung::NetworkBuilder builder;
   builder.add_body("cube", cube, rough);
   const sprung::BoxGeometry finger{.size = {0.02, 0.06, 0.12}};
