@@ -1,3 +1,4 @@
+#include "geometry/mesh/union_find.h"
 #include "simulation/stepper.h"
 
 #include <algorithm>
@@ -25,10 +26,12 @@ std::vector<char> Stepper::particles_to_sleep() const {
   return asleep;
 }
 
-/// A force that may touch any particle may change at any time, and so may wind. Still air does not. Bodies sink into a penalty for
-/// long, and are not at rest while they do.
+/// Without contact, only bodies with a material sleep. Others swing as the laws of springs say, to the last digit: who gives each
+/// stiffness measures small motions. A force that may touch any particle may change at any time, and so may wind. Still air does
+/// not. Bodies sink into a penalty for long, and are not at rest while they do.
 bool Stepper::may_sleep() const {
   return settings().sleep && work().penalty == nullptr && !work().touches_any && state_.planner.feasible_steps > 0 &&
+         (constraints().contacts().can_collide() || std::ranges::any_of(network().bodies, &Body::has_material)) &&
          (time() >= settings().wind.end() || !(settings().has_air() || has_own_drag(network())));
 }
 
@@ -73,20 +76,31 @@ void Stepper::wake_driven() {
   wake_with_bodies(asleep);
 }
 
-/// A group at rest falls asleep if its neighbours are at rest too, and its body does not stand on its edge.
+/// A group at rest falls asleep if its neighbours are at rest too, and if it may hang, touches something, or is joined to such a
+/// group through others that sleep.
 void Stepper::add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed) {
   std::vector<char> awake;
   for (Index p = 0; p < groups().count(); ++p)
     awake.push_back(!sleeps(p) && is_free(p) && !state_.rest.histories[p].is_at_rest ? 1 : 0);
   const std::vector<char> beside_awake = with_neighbours(awake, pairs);
-  const std::vector<char> stands = standing_bodies();
+  std::vector<char> candidates = state_.rest.sleepers;
   for (Index p = 0; p < groups().count(); ++p) {
-    if (sleeps(p) || !is_free(p) || disturbed[p] != 0 || beside_awake[p] != 0) continue;
-    if (stands[groups().groups[p].body] == 0) state_.rest.sleepers[p] = 1;
+    if (!sleeps(p) && is_free(p) && disturbed[p] == 0 && beside_awake[p] == 0) candidates[p] = 1;
+  }
+  UnionFind joined(groups().count());
+  for (const auto& [a, b] : groups().adjacent) {
+    if (candidates[a] != 0 && candidates[b] != 0) joined.join(a, b);
+  }
+  std::vector<char> supported(candidates.size(), 0);  // by root
+  for (Index p = 0; p < groups().count(); ++p) supported[joined.root(p)] |= state_.rest.sleepers[p];
+  for (const Index p : steady_groups()) supported[joined.root(p)] = 1;
+  for (Index p = 0; p < groups().count(); ++p) {
+    if (candidates[p] != 0) state_.rest.sleepers[p] = supported[joined.root(p)];
   }
 }
 
-std::vector<char> Stepper::standing_bodies() const {
+/// The groups of bodies with a material, and those that touch something, without bodies that stand on their edge.
+std::vector<Index> Stepper::steady_groups() const {
   std::vector<std::vector<ContactNormal>> contacts(network().bodies.size());
   for (const ContactNormal& contact : contact_normals()) {
     contacts[groups().groups[groups().group_of[contact.particle]].body].push_back(contact);
@@ -96,7 +110,16 @@ std::vector<char> Stepper::standing_bodies() const {
     const bool touches = structure().symmetry && !of_body.empty();
     stands.push_back(touches && structure().symmetry->has_standing(of_body, state_.x) ? 1 : 0);
   }
-  return stands;
+  std::vector<Index> steady;
+  for (Index p = 0; p < groups().count(); ++p) {
+    const std::size_t body = groups().groups[p].body;
+    if (stands[body] == 0 && network().bodies[body].has_material()) steady.push_back(p);
+  }
+  for (std::size_t b = 0; b < contacts.size(); ++b) {
+    if (stands[b] != 0) continue;
+    for (const ContactNormal& contact : contacts[b]) steady.push_back(groups().group_of[contact.particle]);
+  }
+  return steady;
 }
 
 /// If a group of `asleep` wakes, its whole body wakes: it may have lost its support. A group that an attachment joins to a free

@@ -204,7 +204,7 @@ class StateRules {
     require(state_.impulses.on() == state_.last_impulses.on(), "last_impulses", "", "must be there if `impulses` are");
     const auto is_finite = [](const auto& reaction) { return reaction.second.allFinite(); };
     require(std::ranges::all_of(state_.reactions.impulses, is_finite), "reactions.impulses", "", "must be finite");
-    require(std::isfinite(state_.reactions.since), "reactions.since", state_.reactions.since, "must be finite");
+    require_finite("reactions.since", state_.reactions.since);
     for (const auto& [key, impulses] : {std::pair("impulses", &state_.impulses), {"last_impulses", &state_.last_impulses}}) {
       if (!impulses->on()) continue;
       require_points(std::string(key) + ".on_pinned", impulses->on_pinned);

@@ -108,7 +108,7 @@ class Stepper {
   [[nodiscard]] std::vector<char> particles_to_sleep() const;
   void choose_sleepers();
   void add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed);
-  [[nodiscard]] std::vector<char> standing_bodies() const;
+  [[nodiscard]] std::vector<Index> steady_groups() const;
   void wake_with_bodies(const std::vector<char>& asleep);
   [[nodiscard]] bool disturbs_sleep(const std::vector<GroupPair>& pairs);
   [[nodiscard]] bool all_sleep() const;

@@ -27,15 +27,20 @@ struct Resistance {
   double tangent = 0.0;
 };
 
-/// Quadratic while the derivative is below `limit`, then linear.
-Resistance quadratic(double coefficient, double speed, double limit) {
-  const double rate = 2.0 * coefficient * speed;
+/// c (u + slow) while the derivative of the force is below `limit`, then linear.
+Resistance quadratic(double coefficient, double speed, double limit, double slow = 0.0) {
+  const double rate = coefficient * (2.0 * speed + slow);
+  if (slow > 0.0) {
+    const double from = std::max(0.0, 0.5 * (limit / coefficient - slow));
+    if (speed <= from) return {coefficient * (speed + slow), rate};
+    return {limit - coefficient * from * from / speed, limit};
+  }
   if (rate <= limit) return {coefficient * speed, rate};
   return {limit * (1.0 - 0.5 * limit / rate), limit};
 }
 
-Resistance resistance(bool is_quadratic, double coefficient, double speed, double limit) {
-  return is_quadratic ? quadratic(coefficient, speed, limit) : Resistance{coefficient, coefficient};
+Resistance resistance(bool is_quadratic, double coefficient, double speed, double limit, double slow) {
+  return is_quadratic ? quadratic(coefficient, speed, limit, slow) : Resistance{coefficient, coefficient};
 }
 
 /// A cylinder across the air: k (u^2 + b u^(4/3)) with k = rho d / 2 and b = 10 (nu / d)^(2/3), while the derivative is below
@@ -132,6 +137,7 @@ void SurfaceAirForce::add_body(const Body& body, const SurfaceDrag& drag, double
   if (!own && drag.is_zero()) return;
   Law& faces = laws_.emplace_back();
   faces.faces = own ? SurfaceDrag{.normal = body.drag.normal, .tangential = body.drag.tangential, .quadratic = true} : drag;
+  faces.slow = own ? kSlow : 0.0;
   if (!own) {
     const double mass = network_.masses.segment(body.first_particle, body.particle_count).sum();
     faces.fall = std::sqrt(gravity * mass / (total_area(network_, body) * std::max(drag.normal, drag.tangential)));
@@ -219,8 +225,8 @@ SurfaceAirForce::Flow SurfaceAirForce::flow(const AirElement& element, const Kin
   const double of_step = kRateOfStep / (step_ * flow.size * element.rate_share);  // infinite for implicit schemes
   const double limit = std::max(law.expected, of_step);
   if (is_face) {
-    flow.axial = resistance(law.faces.quadratic, law.faces.normal, flow.along.norm(), limit);
-    flow.radial = resistance(law.faces.quadratic, law.faces.tangential, flow.across.norm(), limit);
+    flow.axial = resistance(law.faces.quadratic, law.faces.normal, flow.along.norm(), limit, law.slow);
+    flow.radial = resistance(law.faces.quadratic, law.faces.tangential, flow.across.norm(), limit, 0.0);
   } else {
     flow.axial = quadratic(0.5 * kAirDensity * law.diameter * kAlongLine, flow.along.norm(), limit);
     flow.radial = cylinder(law.diameter, flow.across.norm(), limit);
@@ -243,6 +249,7 @@ void SurfaceAirForce::find_end_forces(const Kinematics& at, const Air& air, Inde
                             .normal = law.faces.normal,
                             .tangential = law.faces.tangential,
                             .quadratic = law.faces.quadratic,
+                            .slow = law.slow,
                             .expected = law.expected,
                             .step = step_};
       find_face_forces(&elements_[begin], next - begin, of_body, end_forces.col(begin).data());
@@ -299,7 +306,7 @@ double SurfaceAirForce::largest_acceleration() const {
   double acceleration = 0.0;
   for (const Law& law : laws_) {
     const double coefficient = std::max(law.faces.normal, law.faces.tangential);
-    double pressure = coefficient * (law.faces.quadratic ? speed * speed : speed);
+    double pressure = coefficient * (law.faces.quadratic ? speed * (speed + law.slow) : speed);
     if (law.diameter > 0.0) pressure = speed * cylinder(law.diameter, speed, kNoLimit).secant;
     acceleration = std::max(acceleration, pressure * law.share);
   }

@@ -20,7 +20,8 @@ struct SpringNetwork;
 /// of the force.
 ///
 /// A face of area A has the force A (normal u_n + tangential u_t), or A (normal |u_n| u_n + tangential |u_t| u_t) if the drag is
-/// quadratic. The drag is the body's own, which is quadratic, or else that of the settings.
+/// quadratic. The drag is the body's own, which is quadratic, or else that of the settings. The body's own has |u_n| + kSlow in
+/// place of |u_n|.
 ///
 /// A line of length l of a body that has a diameter d follows the cross-flow principle (Taylor 1952, Hoerner 1965): it has the
 /// force 1/2 rho d l (C_n |u_n| u_n + C_t |u_t| u_t). C_n = 1 + 10 Re^(-2/3) with Re = |u_n| d / nu is White's fit for cylinders
@@ -63,6 +64,7 @@ class SurfaceAirForce final : public Force {
   /// The drag of a body, by size.
   struct Law {
     SurfaceDrag faces{};
+    double slow = 0.0;      ///< kSlow for the drag of a body, across its faces [m/s]
     double diameter = 0.0;  ///< of lines [m]; 0: the body has faces
     double fall = 0.0;      ///< speed that is to be expected beside the wind's [m/s]
     double expected = 0.0;  ///< dF/du at the expected speed [kg/s by size]

@@ -54,10 +54,17 @@ using Faces = std::array<const AirElement*, kSimdWidth>;
 }
 
 /// Force by speed and area: see `quadratic` of SurfaceAirForce.
-[[gnu::always_inline]] inline void find_secant(bool quadratic, double coefficient, const Double4& speed, const Double4& limit,
-                                               Double4& secant) {
+[[gnu::always_inline]] inline void find_secant(bool quadratic, double coefficient, double slow, const Double4& speed,
+                                               const Double4& limit, Double4& secant) {
   secant = Double4{} + coefficient;
   if (!quadratic) return;
+  if (slow > 0.0) {
+    const Double4 end = 0.5 * (limit / coefficient - slow);
+    const Double4 from = end > 0.0 ? end : Double4{};
+    const Double4 bounded = limit - coefficient * from * from / speed;
+    secant = speed <= from ? coefficient * (speed + slow) : bounded;
+    return;
+  }
   const Double4 rate = 2.0 * coefficient * speed;
   const Double4 linear = limit * (1.0 - 0.5 * limit / rate);
   secant = rate <= limit ? coefficient * speed : linear;
@@ -104,8 +111,8 @@ void find_face_forces(const AirElement* faces, Index count, const FaceAir& air, 
     const Double4 limit = expected < of_step ? of_step : expected;
     Double4 on_normal{};
     Double4 on_tangent{};
-    find_secant(air.quadratic, air.normal, speed_across, limit, on_normal);
-    find_secant(air.quadratic, air.tangential, speed_along, limit, on_tangent);
+    find_secant(air.quadratic, air.normal, air.slow, speed_across, limit, on_normal);
+    find_secant(air.quadratic, air.tangential, 0.0, speed_along, limit, on_tangent);
     const Double4 x = area * (on_normal * across.x + on_tangent * along.x) / 3.0;
     const Double4 y = area * (on_normal * across.y + on_tangent * along.y) / 3.0;
     const Double4 z = area * (on_normal * across.z + on_tangent * along.z) / 3.0;

@@ -12,6 +12,11 @@ namespace sprung {
 /// largest stable one: with a damping rate of 1 / (4 dt) they need dt^2 l_K + 1 / 2 < 4.
 inline constexpr double kRateOfStep = 0.25;
 
+/// The drag across the faces of a body with a drag of its own is that of a plate in a steady flow at high speed. At low speed it is
+/// proportional to the speed: c |u| (|u| + kSlow) [m/s]. Plates that swing by a small part of their size have a coefficient of up
+/// to ten and more (Keulegan and Carpenter 1958; Graham 1980), as a hem of 0.3 m that swings by 5 mm.
+inline constexpr double kSlow = 0.14;
+
 /// A triangle or a segment. Its size is its area [m^2] or its length [m].
 struct AirElement {
   std::array<Index, 3> ends{kNone, kNone, kNone};  ///< particles of the network; of a segment the first two
@@ -30,6 +35,7 @@ struct FaceAir {
   double normal;             ///< see SurfaceDrag
   double tangential;
   bool quadratic;
+  double slow;      ///< kSlow, or 0 [m/s]
   double expected;  ///< dF/du by area up to which quadratic drag is not continued linearly either [kg/(m^2 s)]
   double step;      ///< of an explicit scheme [s]; 0 for implicit ones
 };

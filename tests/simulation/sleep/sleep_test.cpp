@@ -1,4 +1,4 @@
-// What rests in contact sleeps, nothing else does, and any change wakes it.
+// What is at rest sleeps, nothing else does, and any change wakes it.
 #include "base/error.h"
 #include "dynamics/constraints/constraint.h"
 #include "dynamics/forces/pull_force.h"
@@ -70,17 +70,37 @@ TEST(RestDetector, TheSettingKeepsItAwake) {
   EXPECT_EQ(simulator.step().substeps, 1);
 }
 
-// Its speed is below that of rest all the time.
-TEST(RestDetector, WithoutContactASlowSwingGoesOn) {
+// At 2 mm of amplitude it is seen, at 0.5 mm it swings by less than 0.1 mm in a frame of 1/32 s.
+TEST(RestDetector, ASlowSwingThatDoesNotDieAwayGoesOn) {
+  for (const double amplitude : {0.002, 0.0005}) {
+    NetworkBuilder builder;
+    builder.begin_body("pendulum", kRough);
+    builder.add_particle({0.0, 2.0, 0.0}, 0.1);
+    builder.add_particle({amplitude, 1.0, 0.0}, 0.1);
+    builder.add_spring(0, 1, 1000.0, 1.0, 0.0);
+    builder.pin(0);
+    SpringNetwork network = builder.build();
+    network.bodies.front().has_material_dampers = {true, false, false};
+    Simulator simulator(std::move(network), settings_of(), {ground(kRough)});
+    run(simulator, 6.0);
+    EXPECT_FALSE(sleeps(simulator)) << amplitude;
+  }
+}
+
+// It moves by 0.03 mm in a frame, and would need 5 s for a spring of its length.
+TEST(RestDetector, ASlowSlideGoesOn) {
+  const ContactMaterial smooth{.thickness = 0.5 * kGap};
+  BodyShape shape =
+      make_solid({.size = {0.1, 0.1, 0.1}, .resolution = {3, 3, 3}},
+                 {.structural = SpringMaterial{.value = 500.0, .damping = 0.5}, .shear = SpringMaterial{.value = 500.0}});
+  set_total_mass(shape, 0.1);
+  place(shape, RigidTransform(Eigen::Translation3d(0.0, 0.05 + kGap, 0.0)), {0.001, 0.0, 0.0});
   NetworkBuilder builder;
-  builder.begin_body("pendulum", kRough);
-  builder.add_particle({0.0, 2.0, 0.0}, 0.1);
-  builder.add_particle({0.002, 1.0, 0.0}, 0.1);
-  builder.add_spring(0, 1, 1000.0, 1.0, 0.0);
-  builder.pin(0);
-  Simulator simulator(builder.build(), settings_of(), {ground(kRough)});
-  run(simulator, 2.0);
+  builder.add_body("block", shape, smooth);
+  Simulator simulator(builder.build(), settings_of(), {ground(smooth)});
+  run(simulator, 5.0);
   EXPECT_FALSE(sleeps(simulator));
+  EXPECT_NEAR(simulator.positions().row(0).mean(), 0.005, 1.0e-5);
 }
 
 void add_hanging(NetworkBuilder& builder) {
@@ -100,18 +120,21 @@ SpringNetwork lying_and_hanging() {
   return builder.build();
 }
 
-TEST(RestDetector, ABodyThatTouchesNothingStaysAwakeAndLetsOthersSleep) {
-  SpringNetwork network = lying_and_hanging();
-  Simulator simulator(network, settings_of(), {ground(kRough)});
-  run(simulator, 1.5);
-  EXPECT_TRUE(sleeps(simulator, 0));
-  EXPECT_FALSE(sleeps(simulator, 1));
-  network.inverse_masses[2] = 0.0;  // a body of pins alone need not touch anything
-  network.pins.front().particles.push_back(2);
-  Simulator asleep(network, settings_of(), {ground(kRough)});
-  run(asleep, 1.5);
-  EXPECT_TRUE(sleeps(asleep, 0));
-  EXPECT_EQ(asleep.step().substeps, 0);
+TEST(RestDetector, ABodyThatTouchesNothingSleepsOnlyWithAMaterial) {
+  for (const bool has_material : {false, true}) {
+    SpringNetwork network = lying_and_hanging();
+    if (has_material) network.bodies.back().has_material_dampers = {true, false, false};
+    Simulator simulator(network, settings_of(), {ground(kRough)});
+    run(simulator, 1.5);
+    EXPECT_TRUE(sleeps(simulator, 0));
+    EXPECT_EQ(sleeps(simulator, 1), has_material);
+    network.inverse_masses[2] = 0.0;  // a body of pins alone need not touch anything
+    network.pins.front().particles.push_back(2);
+    Simulator asleep(network, settings_of(), {ground(kRough)});
+    run(asleep, 1.5);
+    EXPECT_TRUE(sleeps(asleep, 0));
+    EXPECT_EQ(asleep.step().substeps, 0);
+  }
 }
 
 TEST(RestDetector, WhatAnAttachmentJoinsToABodyThatIsAwakeStaysAwake) {
