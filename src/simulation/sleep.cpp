@@ -4,6 +4,13 @@
 #include <algorithm>
 
 namespace sprung {
+namespace {
+
+bool has_material(const Body& body) {
+  return std::ranges::any_of(body.has_material_dampers, [](bool has) { return has; });
+}
+
+}  // namespace
 
 bool Stepper::sleeps(Index group) const { return network().is_asleep(groups().groups[group].particles.front()); }
 
@@ -31,7 +38,7 @@ std::vector<char> Stepper::particles_to_sleep() const {
 /// not. Bodies sink into a penalty for long, and are not at rest while they do.
 bool Stepper::may_sleep() const {
   return settings().sleep && work().penalty == nullptr && !work().touches_any && state_.planner.feasible_steps > 0 &&
-         (constraints().contacts().can_collide() || std::ranges::any_of(network().bodies, &Body::has_material)) &&
+         (constraints().contacts().can_collide() || std::ranges::any_of(network().bodies, has_material)) &&
          (time() >= settings().wind.end() || !(settings().has_air() || has_own_drag(network())));
 }
 
@@ -113,7 +120,7 @@ std::vector<Index> Stepper::steady_groups() const {
   std::vector<Index> steady;
   for (Index p = 0; p < groups().count(); ++p) {
     const std::size_t body = groups().groups[p].body;
-    if (stands[body] == 0 && network().bodies[body].has_material()) steady.push_back(p);
+    if (stands[body] == 0 && has_material(network().bodies[body])) steady.push_back(p);
   }
   for (std::size_t b = 0; b < contacts.size(); ++b) {
     if (stands[b] != 0) continue;
