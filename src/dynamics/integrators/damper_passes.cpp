@@ -9,9 +9,9 @@
 namespace sprung {
 namespace {
 
-// T_s(w0). For fast modes, P is between (kOffset - 1) / (kSteep + kOffset) = 0.05 and (kOffset + 1) / (kSteep + kOffset) = 0.32.
-constexpr double kSteep = 6.0;
-constexpr double kOffset = 1.4;
+// T_s(w0). For fast modes, P is between (kOffset - 1) / (kSteep + kOffset) = 0.62 and (kOffset + 1) / (kSteep + kOffset) = 0.75.
+constexpr double kSteep = 5.0;
+constexpr double kOffset = 10.8;
 constexpr double kSum = kSteep + kOffset;
 
 /// w0: the argument of T_s at which it is kSteep.
@@ -95,16 +95,6 @@ void DamperPasses::apply(const Points& x, double dt, SimulationState& state) {
   }
   for_free_particles(network_,
                      [&](Index i) { state.v.col(i) = series.share * state.v.col(i) + (1.0 - series.share) * first_.col(i); });
-}
-
-void DamperPasses::apply_amid(const Points& x, const Points& forces, double dt, SimulationState& state) {
-  if (empty()) return;
-  const auto add_half = [&](double sign) {
-    for_free_particles(network_, [&](Index i) { state.v.col(i) += sign * 0.5 * dt * network_.inverse_masses[i] * forces.col(i); });
-  };
-  add_half(-1.0);
-  apply(x, dt, state);
-  add_half(1.0);
 }
 
 }  // namespace sprung

@@ -24,7 +24,7 @@ class Integrator {
   explicit Integrator(const SpringNetwork& network) : network_(network), dampers_(network) {}
   virtual ~Integrator() = default;
 
-  /// Lets these dampers act at the end of each step, in shorter steps of their own; `rate` as in DamperPasses. They are not among
+  /// Lets these dampers act at the begin of each step, in passes of their own; `rate` as in DamperPasses. They are not among
   /// the forces of `advance`. Requires a scheme that may_split_dampers().
   void set_dampers(Forces dampers, double rate) { dampers_.set(std::move(dampers), rate); }
 

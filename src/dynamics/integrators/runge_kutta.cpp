@@ -21,6 +21,7 @@ class RungeKutta4 final : public Integrator {
   explicit RungeKutta4(const SpringNetwork& network) : Integrator(network) {}
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
+    dampers().apply(state.x, dt, state);
     const auto n = state.x.cols();
     x_ = state.x;
     v_ = state.v;
@@ -35,7 +36,6 @@ class RungeKutta4 final : public Integrator {
       state.x.col(i) += dt * velocity_.col(i);
       state.v.col(i) += dt * acceleration_.col(i);
     });
-    dampers().apply(state.x, dt, state);
   }
 
  private:

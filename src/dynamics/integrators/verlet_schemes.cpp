@@ -59,6 +59,10 @@ class Verlet final : public Integrator {
   }
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
+    if (!dampers().empty()) {
+      dampers().apply(state.x, dt, state);
+      for_free_particles(network(), [&](Index i) { state.x_previous.col(i) = state.x.col(i) - dt * state.v.col(i); });
+    }
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
     record(total_, dt, state);
     set_gains(dt);
@@ -73,9 +77,6 @@ class Verlet final : public Integrator {
       advance_verlet(3 * count, step, gains_.col(begin).data(), total_.col(begin).data(), state.x.col(begin).data(),
                      state.x_previous.col(begin).data(), state.v.col(begin).data());
     });
-    if (dampers().empty()) return;
-    dampers().apply_amid(state.x_previous, total_, dt, state);
-    for_free_particles(network(), [&](Index i) { state.x.col(i) = state.x_previous.col(i) + dt * state.v.col(i); });
   }
 
   void recover_velocities(SimulationState& state, const Forces&, const Points& before, const Points&, double dt) override {
@@ -137,6 +138,7 @@ class VelocityVerlet final : public Integrator {
   explicit VelocityVerlet(const SpringNetwork& network) : Integrator(network) {}
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
+    dampers().apply(state.x, dt, state);
     evaluate(state, forces, dt, total_);
     record(total_, 0.5 * dt, state);
     x_ = state.x;
@@ -152,7 +154,6 @@ class VelocityVerlet final : public Integrator {
       state.x.col(i) = x_.col(i);
       state.v.col(i) = 0.5 * (state.v.col(i) + v_.col(i) + dt * network().inverse_masses[i] * total_.col(i));
     });
-    dampers().apply(state.x, dt, state);
   }
 
   // Springs must not pull with a stretch that constraints removed (RATTLE, Andersen 1983).

@@ -369,7 +369,7 @@ std::vector<Material> make_materials() {
       "a flexible polymer foam",
       {30.0, chosen("near handbook values of 16 to 35 kg/m^3")},
       {3.0e5, chosen("E = 0.3 MPa, near handbook values of 0.25 to 1 MPa" + isotropic)},
-      {0.8, chosen("a ball rebounds to about half of its height, as in the test of foams, ASTM D3574" + impact + "0.2")},
+      {0.9, chosen("a ball rebounds to about half of its height, as in the test of foams, ASTM D3574" + impact + "0.2")},
       {0.50, 0.60, rubbing("rough open cells")},
   }));
   all.push_back(solid({

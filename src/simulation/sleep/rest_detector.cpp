@@ -218,13 +218,12 @@ bool RestDetector::goes_on(const Watched& group, const SimulationState& state, d
   const double displacement = std::sqrt(d00 / static_cast<double>(group.free.size()));
   if (displacement <= kCreep * kWindow) return false;
   if (d11 == 0.0) return true;  // it begins to move
-  // now = a last + b second_last; without a second mode now = a last.
-  double a = d01 / d11;
-  double b = 0.0;
-  if (const double determinant = d11 * d22 - d12 * d12; determinant > 1.0e-6 * d11 * d22) {
-    a = (d01 * d22 - d02 * d12) / determinant;
-    b = (d02 * d11 - d01 * d12) / determinant;
-  }
+  // now = a last + b second_last. A single mode has one equation for both: its swing cannot be told from a slide that stops.
+  const double determinant = d11 * d22 - d12 * d12;
+  const bool is_single = determinant <= 1.0e-6 * d11 * d22;
+  if (is_single && displacement > swing) return true;
+  const double a = is_single ? d01 / d11 : (d01 * d22 - d02 * d12) / determinant;
+  const double b = is_single ? 0.0 : (d02 * d11 - d01 * d12) / determinant;
   const double discriminant = 0.25 * a * a + b;
   if (discriminant < 0.0) return std::sqrt(-b) > kSteady && displacement > swing;
   const double kept = 0.5 * a + std::sqrt(discriminant);

@@ -14,7 +14,6 @@
 namespace sprung {
 namespace {
 
-
 /// A cloth named `name`, and the keys of the scene.
 std::string cloth(const std::string& keys, const std::string& name = "cloth", const std::string& body = R"("material": "cotton")") {
   return R"({"duration": 1, )" + keys + R"("bodies": {")" + name +
