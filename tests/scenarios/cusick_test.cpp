@@ -27,11 +27,12 @@ constexpr Index kAcross = 41;         // particles across the specimen
 constexpr double kDampingRate = 8.0;  // [1/s]: the slowest mode, of some Hz, decays by e^-4 a second
 constexpr double kSeconds = 1.2;
 
+/// With little damping of bends, so that folds form within kSeconds: at rest, a damper has no force.
 Scene scene_of(const std::string& material) {
   TextProblems problems;
   Scene scene = read_scene_text(R"({"duration": 1, "bodies": {"cloth": {"shape": {"type": "cloth", "size": [0.3, 0.3],
                                 "resolution": [41, 41]}, "material": ")" +
-                                    material + "\"}}}",
+                                    material + R"(", "springs": {"bend": {"damping_time": 0.001}}}}})",
                                 "cusick.json", {}, problems);
   if (!problems.all.empty()) throw InputError(problems.all);
   return scene;

@@ -218,17 +218,18 @@ bool RestDetector::goes_on(const Watched& group, const SimulationState& state, d
   const double displacement = std::sqrt(d00 / static_cast<double>(group.free.size()));
   if (displacement <= kCreep * kWindow) return false;
   if (d11 == 0.0) return true;  // it begins to move
+  const bool swings_far = std::max({d00, d11, d22}) > swing * swing * static_cast<double>(group.free.size());
   // now = a last + b second_last. A single mode has one equation for both: its swing cannot be told from a slide that stops.
   const double determinant = d11 * d22 - d12 * d12;
   const bool is_single = determinant <= 1.0e-6 * d11 * d22;
-  if (is_single && displacement > swing) return true;
+  if (is_single && swings_far) return true;
   const double a = is_single ? d01 / d11 : (d01 * d22 - d02 * d12) / determinant;
   const double b = is_single ? 0.0 : (d02 * d11 - d01 * d12) / determinant;
   const double discriminant = 0.25 * a * a + b;
-  if (discriminant < 0.0) return std::sqrt(-b) > kSteady && displacement > swing;
+  if (discriminant < 0.0) return std::sqrt(-b) > kSteady && swings_far;
   const double kept = 0.5 * a + std::sqrt(discriminant);
   const double reversed = 0.5 * a - std::sqrt(discriminant);
-  return kept >= 1.0 || displacement > kSlide * (1.0 - kept) || (reversed < -kSteady && displacement > swing);
+  return kept >= 1.0 || displacement > kSlide * (1.0 - kept) || (reversed < -kSteady && swings_far);
 }
 
 void RestDetector::judge_all(const std::vector<char>& restless, SimulationState& state) const {
