@@ -3,10 +3,12 @@
 // At fixed positions, dampers are linear in the velocities: dv/dt = -M^-1 C v. The passes of a step evaluate a polynomial of
 // M^-1 C by the recurrence of Chebyshev polynomials T, as stabilized Runge-Kutta methods do (van der Houwen and Sommeijer 1980):
 //     v* = P v,  P = (T_s(w0 - w1 M^-1 C) + kOffset) / (T_s(w0) + kOffset).
-// s passes bear a rate that grows with s^2. They act at the begin of a step, before the other forces, on velocities that
-// constraints and contact have left: what rests against them stays as it is. With v' = P v - dt M^-1 K x, x' = x + dt v', a mode of
-// the frequency w is stable up to dt^2 w^2 = 2 (1 + P). The offset keeps P above 0.62, so that automatic steps, 0.9 of what springs
-// alone bear, stay stable: 3.24. Momentum and spin stay, as they do with each damper's force.
+// s passes are stable up to a rate that grows with s^2. They act at the begin of a step, before the other forces. Constraints and
+// contact have then removed the velocities that they oppose, so the dampers do not change an equilibrium with them. The scheme v' =
+// P v
+// - dt M^-1 K x, x' = x + dt v' is stable if dt^2 w^2 <= 2 (1 + P) for each mode of the frequency w. The offset keeps P above 0.62.
+// Automatic steps are at most 0.9 of those that springs alone permit, so that dt^2 w^2 <= 3.24 = 2 (1 + 0.62). Momentum and angular
+// momentum are conserved, as by each damper.
 #pragma once
 
 #include "base/types.h"

@@ -44,7 +44,9 @@ class RestDetector {
   /// Both bounds are smaller in bodies with springs shorter than 1 cm, in proportion.
   ///
   /// Motion goes on if the prediction slides on by more than a millimetre before it stops, or swings on, by more than 0.1 mm, at
-  /// more than 0.98 of its amplitude a window. A block that slides at a constant speed is not at rest at any speed above 30 nm/s.
+  /// more than 0.98 of its amplitude a window. If all particles move in proportion, three windows cannot tell a swing from a slide
+  /// that stops: the motion then goes on if it moved them by more than 0.1 mm in any of the three. A block that slides at a
+  /// constant speed is not at rest at any speed above 30 nm/s.
   void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
 
   /// Discards all that is known of rest: each group has to come to rest again.

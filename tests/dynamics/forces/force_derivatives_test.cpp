@@ -164,6 +164,16 @@ SpringNetwork rumpled_cloth() {
   return network;
 }
 
+/// The derivatives by velocity are those of the force, and damp. Those by position are left out.
+void expect_damping(const Case& air) {
+  const ForceDerivatives derivatives = air.derivatives();
+  expect_near(derivatives.by_velocity, air.differences_by_velocity());
+  EXPECT_TRUE(dense(derivatives.by_position).isZero(0.0));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(derivatives.by_velocity), Eigen::EigenvaluesOnly);
+  EXPECT_LE(solver.eigenvalues().maxCoeff(), 1e-13) << "the entries are below 1";
+  EXPECT_LT(solver.eigenvalues().minCoeff(), -0.01);
+}
+
 // A step of 1 ms leaves the force quadratic at these speeds; one of 1 s continues it linearly beyond the expected speed, that of
 // the wind, 0.5 m/s.
 TEST(ForceDerivatives, OfAirOnFacesAreTheDifferencesOfItsForceByVelocity) {
@@ -173,12 +183,20 @@ TEST(ForceDerivatives, OfAirOnFacesAreTheDifferencesOfItsForceByVelocity) {
         SurfaceDrag{.normal = 0.1, .tangential = 0.3, .quadratic = true}}) {
     for (const double step : {0.0, 1e-3, 1.0}) {
       const Case air(network, std::in_place_type<SurfaceAirForce>, drag, Wind(Vector3(0.0, 0.3, 0.4)), 0.0, step);
-      const ForceDerivatives derivatives = air.derivatives();
-      expect_near(derivatives.by_velocity, air.differences_by_velocity());
-      EXPECT_TRUE(dense(derivatives.by_position).isZero(0.0));
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(derivatives.by_velocity), Eigen::EigenvaluesOnly);
-      EXPECT_LE(solver.eigenvalues().maxCoeff(), 1e-13) << "the entries are below 1";
-      EXPECT_LT(solver.eigenvalues().minCoeff(), -0.01);
+      expect_damping(air);
+    }
+  }
+}
+
+// As above, with the part that is linear at low speed.
+TEST(ForceDerivatives, OfAirOnABodyWithItsOwnDragAreTheDifferencesOfItsForceByVelocity) {
+  SpringNetwork network = rumpled_cloth();
+  for (const double factor : {1.0, 0.1}) {
+    network.velocities *= factor;
+    network.bodies[0].drag = {.normal = 0.8, .tangential = 0.3};
+    for (const double step : {0.0, 1e-3, 1.0}) {
+      const Case air(network, std::in_place_type<SurfaceAirForce>, SurfaceDrag{}, Wind(Vector3(0.0, 0.3, 0.4)), 0.0, step);
+      expect_damping(air);
     }
   }
 }
@@ -198,12 +216,7 @@ TEST(ForceDerivatives, OfAirOnLinesAreTheDifferencesOfItsForceByVelocity) {
   const SpringNetwork network = crumpled_rope();
   for (const double step : {0.0, 1e-3, 1.0}) {
     const Case air(network, std::in_place_type<SurfaceAirForce>, SurfaceDrag{}, Wind(Vector3(0.0, 0.3, 0.4)), 0.0, step);
-    const ForceDerivatives derivatives = air.derivatives();
-    expect_near(derivatives.by_velocity, air.differences_by_velocity());
-    EXPECT_TRUE(dense(derivatives.by_position).isZero(0.0));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(derivatives.by_velocity), Eigen::EigenvaluesOnly);
-    EXPECT_LE(solver.eigenvalues().maxCoeff(), 1e-13) << "the entries are below 1";
-    EXPECT_LT(solver.eigenvalues().minCoeff(), -0.01);
+    expect_damping(air);
   }
 }
 
