@@ -59,9 +59,10 @@ class Verlet final : public Integrator {
   }
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
-    if (!dampers().empty()) {
+    if (!dampers().empty()) {  // at the start, x_previous is not x - v dt
+      undamped_ = state.v;
       dampers().apply(state.x, dt, state);
-      for_free_particles(network(), [&](Index i) { state.x_previous.col(i) = state.x.col(i) - dt * state.v.col(i); });
+      for_free_particles(network(), [&](Index i) { state.x_previous.col(i) += dt * (undamped_.col(i) - state.v.col(i)); });
     }
     if (!forces_are_constant_) evaluate(state, forces, dt, total_);
     record(total_, dt, state);
@@ -126,6 +127,7 @@ class Verlet final : public Integrator {
   std::vector<FreeRun> free_runs_;
   std::vector<Index> pinned_;
   Points total_;
+  Points undamped_;
   bool forces_are_constant_ = false;
   Points gains_;
   Points gained_;

@@ -7,9 +7,8 @@ namespace sprung {
 inline constexpr double kAirDensity = 1.2;       ///< [kg/m^3]
 inline constexpr double kAirViscosity = 1.5e-5;  ///< kinematic [m^2/s]
 
-/// The drag of a body's faces, or of the lines of a body without faces: quadratic, at low speed
-/// linear, as SurfaceAirForce has it. Default: none, as in
-/// vacuum. drag_in_air() has the coefficients of a shape.
+/// The drag of a body's faces, or of the lines of a body without faces: quadratic, and linear at low speed, as SurfaceAirForce has
+/// it. Default: none, as in vacuum. drag_in_air() has the coefficients of a shape.
 struct BodyDrag {
   double normal = 0.0;         ///< of faces, by area and squared speed across them [kg/m^3], >= 0
   double tangential = 0.0;     ///< of faces, by area and squared speed along them [kg/m^3], >= 0

@@ -1,5 +1,7 @@
 #include "network/model/spring_failure.h"
 
+#include "base/sort_unique.h"
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -13,11 +15,9 @@ using Pair = std::pair<Index, Index>;
 
 Pair pair_of(Index a, Index b) { return std::minmax(a, b); }
 
-/// A sorted list without duplicates.
 template <class Entry>
 std::vector<Entry> sorted_set(std::vector<Entry> entries) {
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  sort_unique(entries);
   return entries;
 }
 

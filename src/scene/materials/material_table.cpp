@@ -14,8 +14,8 @@ namespace {
 constexpr double kFastestWave = 50.0;  // [m/s]
 // Instead, springs keep this speed: the weight of a metre of cloth compresses them by g L / c^2 = 1.6 %.
 constexpr double kKeptWaveOfCloth = 25.0;  // [m/s]
-// Folds and hems of a quarter of a metre swing at this frequency. Kelvin-Voigt dampers have the loss factor of a material at one
-// frequency only: at higher ones more, at lower ones less.
+// A hem of 0.1 m swings at this frequency: sqrt(3 g / (2 l)) / (2 pi). Kelvin-Voigt dampers have the loss factor of a material at
+// one frequency only: at higher ones more, at lower ones less.
 constexpr double kSwing = 2.0;  // [Hz]
 // Angle bends of a rope shorten its springs, which must be stiffer for it: see weak_springs in simulation/settings.
 constexpr double kKeptWaveOfRope = 60.0;  // [m/s]
@@ -73,7 +73,7 @@ double rounded(double value) { return std::stod(format_number(value, 4)); }
 
 MaterialValue bend_damping(const Sourced& loss) {
   return {"springs.bend.damping_time", std::stod(format_number(loss.value / (2.0 * std::numbers::pi * kSwing), 2)), "s",
-          loss.source + "; a loss factor of " + number(loss.value) + " at " + number(kSwing) + " Hz, the swing of a hem"};
+          loss.source + "; a loss factor of " + number(loss.value) + " at " + number(kSwing) + " Hz, the swing of a hem of 0.1 m"};
 }
 
 MaterialValue stretch_damping(const std::string& kind, double time) {

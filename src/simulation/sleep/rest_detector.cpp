@@ -23,20 +23,20 @@ constexpr double kUnseen = 1.0e-4;
 // Springs of this length [m] and longer ones scale no bound.
 constexpr double kLongSpring = 0.01;
 
-// Displacement of a particle at rest [m], as long as a slow slide of a few seconds; and the same as a part of the shortest spring.
+// The largest displacement of a particle at rest in a window [m], and as a part of the shortest spring.
 constexpr double kMost = 2.5e-3;
 constexpr double kOfSpring = 0.1;
 
 // Change of the springs' force on a group that does not wake it, as a fraction of its weight.
 constexpr double kOfWeight = 0.1;
 
-// A motion that slides on by less before it stops has stopped for the eye [m].
+// A slide that is predicted to stop within this distance counts as stopped [m].
 constexpr double kSlide = 1.0e-3;
 
-// A swing that keeps more of its amplitude in a window halves it in more than 8 s.
+// The part of its amplitude that a steady swing keeps in a window: it needs more than 8 s to halve it.
 constexpr double kSteady = 0.98;
 
-// A slower creep takes an hour for what the eye sees [m/s].
+// A slower creep needs an hour for a displacement that the eye sees [m/s].
 constexpr double kCreep = 3.0e-8;
 
 }  // namespace

@@ -177,6 +177,30 @@ TEST(DamperPasses, ConvergeToTheDecayOfADamper) {
   }
 }
 
+// What rests against a constraint has no velocity at the begin of a step. Its forces then act in full: dampers that weakened them
+// would shift the equilibrium. Many dampers at a high rate.
+TEST(DamperPasses, LeaveWhatForcesGiveFromRest) {
+  SpringNetwork damped = make_network(true);
+  damped.velocities.setZero();
+  for (double& damping : damped.springs.damping) damping = 50.0;
+  for (double& rest : damped.springs.rest_length) rest *= 0.5;
+  SpringNetwork plain = damped;
+  std::ranges::fill(plain.springs.damping, 0.0);
+  std::ranges::fill(plain.angle_bends.damping, 0.0);
+  for (const IntegratorSettings& settings : kSplitting) {
+    const double dt = 0.1 * largest_stable_step(settings, spectral_bounds(plain));
+    DampedRun with(damped, settings, dt);
+    DampedRun without(plain, settings, dt);
+    for (DampedRun* run : {&with, &without}) {
+      run->start();
+      run->advance(1);
+    }
+    EXPECT_LE((with.state.x - without.state.x).norm(), 1e-15 * without.state.x.norm()) << settings.index();
+    EXPECT_GT(without.state.v.norm(), 0.0);
+    EXPECT_LE((with.state.v - without.state.v).norm(), 1e-12 * without.state.v.norm()) << settings.index();
+  }
+}
+
 // Springs and dampers whose modes differ, so that no mode of the one is one of the other.
 TEST(DamperPasses, NeedNoSmallerStepThanTheSpringsAlone) {
   SpringNetwork network = make_network(true);
