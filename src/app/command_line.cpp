@@ -15,10 +15,12 @@ namespace sprung {
 namespace {
 
 constexpr int kMaxThreads = 1'024;
+constexpr double kMostSeconds = 1e9;
 
 constexpr const char* kExamples = R"(Examples:
   sprung run examples/rope_over_torus.json --out frames
   sprung run scene.json --out frames --overwrite --frames 30 --set 'bodies.banner.shape.resolution=[128,128]'
+  sprung run scene.json --out frames --resume
   sprung validate scene.json --mesh-path ~/meshes
   sprung info bunny.obj
   sprung view examples/hanging_cloth.json
@@ -77,7 +79,9 @@ class Parser {
   void add_run() {
     CLI::App* run = app_.add_subcommand("run", "Simulates a scene and writes it as OBJ sequences");
     add_scene(run, run_.scene);
-    run->add_option("--out", run_.out, "Folder for the frames; must be empty or not exist")->required()->type_name("DIR");
+    run->add_option("--out", run_.out, "Folder for the frames; must be empty or not exist, unless the run is resumed")
+        ->required()
+        ->type_name("DIR");
     run->add_option("--format", run_.format, "obj: OBJ sequences, the default; none: record.bin and diagnostics alone")
         ->check(CLI::IsMember({"obj", "none"}))
         ->type_name("FORMAT");
@@ -88,7 +92,13 @@ class Parser {
         ->check(CLI::Range(1, kMaxThreads))
         ->type_name("N");
     run->add_flag("--quiet", run_.quiet, "Print errors only");
-    run->add_flag("--overwrite", run_.overwrite, "Remove the files of an earlier run from the folder, and nothing else");
+    auto* overwrite =
+        run->add_flag("--overwrite", run_.overwrite, "Remove the files of an earlier run from the folder, and nothing else");
+    run->add_flag("--resume", run_.resume, "Go on with the run in the folder from its last checkpoint, or begin it")
+        ->excludes(overwrite);
+    run->add_option("--checkpoint", run_.checkpoint, "Seconds between two checkpoints, 60 by default; 0: none")
+        ->check(CLI::Range(0.0, kMostSeconds))
+        ->type_name("SECONDS");
   }
 
   void add_validate() {

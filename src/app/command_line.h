@@ -19,6 +19,8 @@ struct RunOptions {
   std::optional<int> threads;
   bool quiet = false;
   bool overwrite = false;
+  bool resume = false;
+  double checkpoint = 60.0;  ///< at most so often a checkpoint is written [s]; 0: never
 };
 
 struct ValidateOptions {

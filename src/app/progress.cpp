@@ -28,7 +28,8 @@ int tenth_of(int frame, int frames) { return static_cast<int>(static_cast<double
 
 }  // namespace
 
-Progress::Progress(int frames, bool quiet) : frames_(frames), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(int frames, int done, bool quiet)
+    : frames_(frames), done_(done), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   if (terminal_ && shown_frame_ > 0) std::fputc('\n', stderr);
@@ -55,7 +56,7 @@ bool Progress::is_due(int frame, Clock::time_point now) const {
 }
 
 std::string Progress::line(int frame, double seconds) const {
-  const double per_frame = seconds / frame;
+  const double per_frame = seconds / (frame - done_);
   const std::string pace = per_frame < kLongFrame ? fmt::format("{:.3g} ms", 1e3 * per_frame) : describe_duration(per_frame);
   std::string text = fmt::format("frame {}/{}, {} per frame", frame, frames_, pace);
   if (frame < frames_) text += ", " + describe_duration(per_frame * (frames_ - frame)) + " left";

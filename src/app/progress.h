@@ -8,7 +8,8 @@ namespace sprung {
 
 class Progress {
  public:
-  Progress(int frames, bool quiet);
+  /// `done` frames are there before the run.
+  Progress(int frames, int done, bool quiet);
   /// Ends the line of the bar.
   ~Progress();
   Progress(const Progress&) = delete;
@@ -24,6 +25,7 @@ class Progress {
   [[nodiscard]] std::string line(int frame, double seconds) const;
 
   int frames_;
+  int done_;
   bool quiet_;
   bool terminal_;
   int shown_frame_ = 0;

@@ -38,7 +38,8 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
           .scene_file = loaded.scene.file.filename().string(),
           .materials = std::move(materials),
           .write_obj = options.format == "obj",
-          .write_record = loaded.scene.write_record};
+          .write_record = loaded.scene.write_record,
+          .checkpoint_interval = options.checkpoint};
 }
 
 void announce(const LoadedScene& loaded) {
@@ -52,15 +53,6 @@ void announce(const LoadedScene& loaded) {
   for (const std::string& warning : loaded.warnings) print_warning(warning);
 }
 
-// The error that ended the run matters more than a failure to record it.
-void finish_without_error(RunOutput& output, const std::string& outcome) {
-  try {
-    output.finish(outcome);
-  } catch (const FileError&) {
-    return;
-  }
-}
-
 /// Nothing if the user interrupts.
 std::optional<FrameDiagnostics> next_frame(FrameRunner& runner) {
   try {
@@ -70,21 +62,33 @@ std::optional<FrameDiagnostics> next_frame(FrameRunner& runner) {
   }
 }
 
-/// Writes frames until all are written or the user interrupts. `written` counts them, also if an exception ends the run.
-void write_frames(LoadedScene& loaded, RunOutput& output, bool quiet, int& written) {
-  FrameRunner runner(loaded.simulator);
-  Progress progress(loaded.frames, quiet);
-  RunWatch watch(loaded.simulator, output, quiet);
-  loaded.simulator.stop_when(interrupted);
-  for (int frame = 1; frame <= loaded.frames && !interrupted(); ++frame) {
+/// The run that is being written.
+struct Run {
+  LoadedScene& loaded;
+  RunOutput& output;
+  RunWatch watch;
+  bool can_write_checkpoints = true;
+};
+
+void note_failed_checkpoint(Run& run, const std::string& failure) {
+  if (failure.empty() || !std::exchange(run.can_write_checkpoints, false)) return;
+  run.watch.warn(failure + "; the former checkpoint stays, and the run goes on");
+}
+
+/// Writes frames until all are written or the user interrupts.
+void write_frames(Run& run, bool quiet) {
+  FrameRunner runner(run.loaded.simulator);
+  Progress progress(run.loaded.frames, run.output.frames_written(), quiet);
+  run.loaded.simulator.stop_when(interrupted);
+  for (int frame = run.output.frames_written() + 1; frame <= run.loaded.frames && !interrupted(); ++frame) {
     const auto diagnostics = frame == 1 ? runner.first_frame() : next_frame(runner);
     if (!diagnostics) break;
-    output.write_frame(loaded.simulator, *diagnostics);
-    written = frame;
-    watch.note_frame(*diagnostics);
+    run.output.write_frame(run.loaded.simulator, *diagnostics);
+    run.watch.note_frame(*diagnostics);
+    note_failed_checkpoint(run, run.output.note_checkpoint(run.loaded.simulator, run.watch.memory()));
     progress.frame_done(frame);
   }
-  watch.finish();
+  run.watch.finish();
 }
 
 /// Frame 1 is the state at time 0, so it exists when a simulation diverges.
@@ -93,20 +97,42 @@ void print_last_frame(const LoadedScene& loaded, int frames, const std::string& 
                             format_number((frames - 1) / loaded.scene.frame_rate, 6), frames, folder));
 }
 
-int write_run(LoadedScene& loaded, RunOutput& output, const RunOptions& options) {
-  int frames = 0;
+void write_run(Run& run, const RunOptions& options) {
+  const auto finish = [&](const std::string& outcome) {
+    note_failed_checkpoint(run, run.output.write_last_checkpoint(run.loaded.simulator));
+    run.output.finish(outcome);
+  };
+  // The error that ended the run matters more than a failure to record it.
+  const auto finish_without_error = [&](const std::string& outcome) {
+    try {
+      finish(outcome);
+    } catch (const FileError&) {
+      return;
+    }
+  };
   try {
-    write_frames(loaded, output, options.quiet, frames);
-    output.finish(frames == loaded.frames ? "done" : "interrupted");
+    write_frames(run, options.quiet);
+    finish(run.output.frames_written() == run.loaded.frames ? "done" : "interrupted");
   } catch (const StepError& error) {
-    finish_without_error(output, std::string("diverged: ") + error.what());
-    print_last_frame(loaded, frames, options.out);
+    finish_without_error(std::string("diverged: ") + error.what());
+    print_last_frame(run.loaded, run.output.frames_written(), options.out);
     throw;
   } catch (const std::exception& error) {
-    finish_without_error(output, std::string("failed: ") + error.what());
+    finish_without_error(std::string("failed: ") + error.what());
     throw;
   }
-  return frames;
+}
+
+/// The output of a run that begins, or goes on from `point`. `memory` gets what the watch of a run that goes on remembers.
+RunOutput open_output(OutputFolder folder, const RunFacts& facts, const ResumePoint& point, LoadedScene& loaded,
+                      std::string& memory) {
+  if (point.checkpoint) {
+    RunOutput output(std::move(folder), facts, loaded.simulator, *point.checkpoint, memory);
+    loaded.simulator.restore(point.checkpoint->state);
+    return output;
+  }
+  if (!folder.is_empty()) folder.remove_run();
+  return {std::move(folder), facts, loaded.simulator};
 }
 
 }  // namespace
@@ -121,17 +147,35 @@ ExitCode run(const RunOptions& options) {
   }
   if (interrupted()) return ExitCode::interrupted;
 
-  RunOutput output(OutputFolder(options.out, options.overwrite), facts_of(loaded, options, threads), loaded.simulator);
+  OutputFolder folder = options.resume ? OutputFolder::as_it_is(options.out) : OutputFolder(options.out, options.overwrite);
+  const RunFacts facts = facts_of(loaded, options, threads);
+  const ResumePoint point = options.resume ? find_resume_point(folder, facts, loaded.simulator) : ResumePoint();
+  if (point.is_complete) {
+    print_message(fmt::format("{} has {} of the {} that are asked for; nothing is left to do", options.out,
+                              counted(point.frames_written, "frame"), loaded.frames));
+    return ExitCode::done;
+  }
+  std::string memory;
+  RunOutput output = open_output(std::move(folder), facts, point, loaded, memory);
   if (!options.quiet) announce(loaded);
+  Run run{loaded, output, RunWatch(loaded.simulator, output, options.quiet)};
+  if (!memory.empty()) run.watch.restore(memory);
+  const int begin = output.frames_written();
+  if (options.resume && !options.quiet) {
+    print_message(begin > 0 ? fmt::format("goes on after frame {} of {}", begin, loaded.frames)
+                            : std::string("there is no checkpoint; the run begins at frame 1"));
+  }
   const auto start = std::chrono::steady_clock::now();
-  const int written = write_run(loaded, output, options);
+  write_run(run, options);
   const std::string time = describe_duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
+  const int written = output.frames_written();
   if (written < loaded.frames) {
-    print_message(fmt::format("interrupted; {} of {} frames are in {}", written, loaded.frames, options.out));
+    print_message(fmt::format("interrupted; {} of {} frames are in {}{}", written, loaded.frames, options.out,
+                              options.checkpoint > 0.0 ? "; --resume goes on" : ""));
     return ExitCode::interrupted;
   }
-  if (!options.quiet) print_message(fmt::format("{} frames in {}, written to {}", written, time, options.out));
+  if (!options.quiet) print_message(fmt::format("{} frames in {}, written to {}", written - begin, time, options.out));
   return ExitCode::done;
 }
 

@@ -1,6 +1,7 @@
 #include "app/run_watch.h"
 
 #include "app/console.h"
+#include "base/binary_archive.h"
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
@@ -53,6 +54,27 @@ bool moves_anything(const Simulator& simulator) {
 
 }  // namespace
 
+template <Same<EnergyGainMemory::FrameEnergy> S, class Visit>
+void visit_members(S& e, const Visit& visit) {
+  visit(e.frame, e.energy);
+}
+template <Same<EnergyGainMemory> S, class Visit>
+void visit_members(S& e, const Visit& visit) {
+  visit(e.max_kinetic, e.lowest, e.rise_begin, e.rise_end);
+}
+template <Same<PinStretch> S, class Visit>
+void visit_members(S& p, const Visit& visit) {
+  visit(p.first, p.second, p.length, p.stretch);
+}
+template <Same<RunWatchMemory::Missed> S, class Visit>
+void visit_members(S& m, const Visit& visit) {
+  visit(m.frames, m.largest, m.worst_frame, m.pins);
+}
+template <Same<RunWatchMemory> S, class Visit>
+void visit_members(S& m, const Visit& visit) {
+  visit(m.infeasible, m.inverted, m.missed, m.energy, m.frames, m.truncated_frames, m.handed_over, m.last_break);
+}
+
 RunWatch::RunWatch(const Simulator& simulator, RunOutput& output, bool quiet)
     : simulator_(simulator),
       output_(output),
@@ -79,14 +101,25 @@ void RunWatch::finish() {
   warn_of_self_crossings();
 }
 
+std::string RunWatch::memory() const {
+  RunWatchMemory memory = memory_;
+  memory.energy = energy_.memory;
+  return to_bytes(memory);
+}
+
+void RunWatch::restore(const std::string& memory) {
+  from_bytes(memory, memory_);
+  energy_.memory = memory_.energy;
+}
+
 void RunWatch::warn(const std::string& warning) {
   output_.add_warning(warning);
   print_warning(warning);
 }
 
 void RunWatch::note_infeasible(const FrameDiagnostics& frame) {
-  if (infeasible_ || frame.infeasible == 0) return;
-  infeasible_ = true;
+  if (memory_.infeasible || frame.infeasible == 0) return;
+  memory_.infeasible = true;
   warn(
       fmt::format("frame {}: {} had no admissible position and may intersect (column infeasible in diagnostics.csv). Increase the "
                   "clearance, move pins out of obstacles, or slow the obstacles and pins that close on them.",
@@ -94,8 +127,8 @@ void RunWatch::note_infeasible(const FrameDiagnostics& frame) {
 }
 
 void RunWatch::note_inverted(const FrameDiagnostics& frame) {
-  if (inverted_ || frame.inverted_cells == 0) return;
-  inverted_ = true;
+  if (memory_.inverted || frame.inverted_cells == 0) return;
+  memory_.inverted = true;
   const bool preserved =
       std::ranges::all_of(simulator_.network().bodies, [](const Body& body) { return body.preserve_volume || body.cells.empty(); });
   warn(fmt::format(
@@ -107,24 +140,24 @@ void RunWatch::note_inverted(const FrameDiagnostics& frame) {
 void RunWatch::note_stretch(const FrameDiagnostics& frame) {
   const auto& limit = simulator_.settings().stretch_limit;
   if (!limit || frame.stretch_excess <= wanted_excess(*limit)) return;
-  ++missed_.frames;
-  if (frame.stretch_excess <= missed_.largest) return;
-  missed_.largest = frame.stretch_excess;
-  missed_.worst_frame = frame.frame;
-  missed_.pins = largest_pin_stretch(find_tethers(simulator_.network(), limit->kinds), simulator_.positions());
+  ++memory_.missed.frames;
+  if (frame.stretch_excess <= memory_.missed.largest) return;
+  memory_.missed.largest = frame.stretch_excess;
+  memory_.missed.worst_frame = frame.frame;
+  memory_.missed.pins = largest_pin_stretch(find_tethers(simulator_.network(), limit->kinds), simulator_.positions());
 }
 
 void RunWatch::note_handovers() {
   const std::vector<StretchHandover>& handovers = simulator_.state().limit.handovers;
-  handed_over_.resize(handovers.size(), false);
+  memory_.handed_over.resize(handovers.size(), 0);
   std::map<std::int64_t, std::vector<std::string>> bodies;  // by step
   std::vector<std::string> back;
   for (std::size_t b = 0; b < handovers.size(); ++b) {
     const std::optional<std::int64_t>& since = handovers[b].solved_since;
     const std::string& name = simulator_.network().bodies[b].name;
-    if (!quiet_ && since && !handed_over_[b]) bodies[*since].push_back(name);
-    if (!quiet_ && !since && handed_over_[b]) back.push_back(name);
-    handed_over_[b] = since.has_value();
+    if (!quiet_ && since && memory_.handed_over[b] == 0) bodies[*since].push_back(name);
+    if (!quiet_ && !since && memory_.handed_over[b] != 0) back.push_back(name);
+    memory_.handed_over[b] = since ? 1 : 0;
   }
   for (const auto& [step, names] : bodies) {
     print_message(fmt::format("gauss_seidel kept missing the stretch limit of {}; newton solves it after step {}",
@@ -138,38 +171,38 @@ void RunWatch::note_handovers() {
 // What breaks is asked for, so it is no warning.
 void RunWatch::note_broken(const FrameDiagnostics& frame) {
   std::map<std::string, std::size_t> counts;  // of links that broke since the frame before, by attachment
-  std::int64_t last = last_break_;
+  std::int64_t last = memory_.last_break;
   for (const BrokenLink& link : simulator_.broken_links()) {
-    if (link.step <= last_break_) continue;
+    if (link.step <= memory_.last_break) continue;
     ++counts[link.attachment];
     last = std::max(last, link.step);
   }
-  last_break_ = last;
+  memory_.last_break = last;
   if (quiet_) return;
   for (const auto& [name, count] : counts)
     print_message(fmt::format("frame {}: {} broke ({})", frame.frame, name, counted(count, "link")));
 }
 
 void RunWatch::note_truncated(const FrameDiagnostics& frame) {
-  ++frames_;
+  ++memory_.frames;
   const double particles = static_cast<double>(frame.substeps) * static_cast<double>(simulator_.network().particle_count());
   // Obstacles that close on a body stop many particles at any thickness; such frames have infeasible vertices.
-  if (frame.infeasible == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++truncated_frames_;
+  if (frame.infeasible == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++memory_.truncated_frames;
 }
 
 void RunWatch::warn_of_missed_limit() {
-  if (missed_.frames == 0) return;
+  if (memory_.missed.frames == 0) return;
   const StretchLimitSettings& limit = *simulator_.settings().stretch_limit;
   warn(
       fmt::format("the stretch limit was missed by more than {} % of a rest length in {}, at most by {} % in frame {} (column "
                   "stretch_excess in diagnostics.csv). {}",
-                  format_number(100.0 * wanted_excess(limit), 2), counted(missed_.frames, "frame"),
-                  format_number(100.0 * missed_.largest, 2), missed_.worst_frame, remedy_for_stretch()));
+                  format_number(100.0 * wanted_excess(limit), 2), counted(memory_.missed.frames, "frame"),
+                  format_number(100.0 * memory_.missed.largest, 2), memory_.missed.worst_frame, remedy_for_stretch()));
 }
 
 std::string RunWatch::remedy_for_stretch() const {
   const StretchLimitSettings& limit = *simulator_.settings().stretch_limit;
-  if (const PinStretch& pins = missed_.pins; pins.stretch > limit.max_stretch) {
+  if (const PinStretch& pins = memory_.missed.pins; pins.stretch > limit.max_stretch) {
     const double allowed = (1.0 + limit.max_stretch) * pins.length;
     return fmt::format(
         "Two pins of body \"{}\" are {} m apart in that frame, but the springs between them are {} m long and may be {} m, so no "
@@ -183,7 +216,7 @@ std::string RunWatch::remedy_for_stretch() const {
     return "Raise \"iterations\" of \"stretch_limit\", use a smaller \"step\" or, for ropes and cloths, \"solver\": \"auto\".";
   if (simulator_.stretch_solver() != "newton") return "Raise \"iterations\" of \"stretch_limit\", or use a smaller \"step\".";
   // The excess that Newton's method leaves is proportional to the step; more iterations do not help.
-  const double times = std::ceil(missed_.largest / wanted_excess(limit));
+  const double times = std::ceil(memory_.missed.largest / wanted_excess(limit));
   return fmt::format("Use a step {} times smaller{}.", format_number(times, 2),
                      moves_anything(simulator_) ? ", or let pins and obstacles move more slowly" : "");
 }
@@ -202,7 +235,7 @@ void RunWatch::warn_of_self_crossings() {
 }
 
 void RunWatch::warn_of_thin_bodies() {
-  if (truncated_frames_ < kManyFrames * frames_) return;
+  if (memory_.truncated_frames < kManyFrames * memory_.frames) return;
   const SimulatorSettings& settings = simulator_.settings();
   const double least = kFallsWithinGap * settings.gravity.norm() * settings.step * settings.step;
   const double gap = thinnest_gap(simulator_.network().bodies, simulator_.obstacles());
@@ -212,7 +245,7 @@ void RunWatch::warn_of_thin_bodies() {
   warn(fmt::format(
       "thickness {} m is too small for the step: resting bodies fall through it in a few steps. Contact stopped more than {} % of "
       "the particles in {}, which is slow and overstretches them. Use a thickness of at least {} m{}.",
-      format_number(gap, 3), format_number(100.0 * kManyParticles), counted(truncated_frames_, "frame"),
+      format_number(gap, 3), format_number(100.0 * kManyParticles), counted(memory_.truncated_frames, "frame"),
       format_lower_bound(least, 2), step ? fmt::format(", or a step of at most {} s", format_number(*step)) : ""));
 }
 

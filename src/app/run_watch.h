@@ -6,10 +6,30 @@
 #include "simulation/diagnostics.h"
 #include "simulation/monitoring/energy_watch.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace sprung {
+
+/// What RunWatch remembers of the frames so far.
+struct RunWatchMemory {
+  struct Missed {
+    int frames = 0;
+    double largest = 0.0;  ///< fraction of a rest length
+    int worst_frame = 0;
+    PinStretch pins{};  ///< in that frame
+  };
+
+  bool infeasible = false;
+  bool inverted = false;
+  Missed missed{};
+  EnergyGainMemory energy{};
+  int frames = 0;
+  int truncated_frames = 0;         ///< frames in which truncation stopped many particles
+  std::vector<char> handed_over{};  ///< by body
+  std::int64_t last_break = 0;      ///< number of the step after which a rod or spring broke last
+};
 
 /// Prints warnings and adds them to run.json.
 class RunWatch {
@@ -25,8 +45,15 @@ class RunWatch {
   /// of an undriven scene rose, and if a body without self-contact crosses itself now. Throws FileError.
   void finish();
 
- private:
+  /// Prints a warning and adds it to run.json.
   void warn(const std::string& warning);
+
+  /// What it remembers, as bytes, for a run that goes on later.
+  [[nodiscard]] std::string memory() const;
+  /// Throws BytesError.
+  void restore(const std::string& memory);
+
+ private:
   void note_infeasible(const FrameDiagnostics& frame);
   void note_inverted(const FrameDiagnostics& frame);
   void note_stretch(const FrameDiagnostics& frame);
@@ -38,24 +65,11 @@ class RunWatch {
   void warn_of_self_crossings();
   [[nodiscard]] std::string remedy_for_stretch() const;
 
-  struct Missed {
-    int frames = 0;
-    double largest = 0.0;  ///< fraction of a rest length
-    int worst_frame = 0;
-    PinStretch pins;  ///< in that frame
-  };
-
   const Simulator& simulator_;
   RunOutput& output_;
   bool quiet_;
-  bool infeasible_ = false;
-  bool inverted_ = false;
-  Missed missed_;
   EnergyGain energy_;
-  int frames_ = 0;
-  int truncated_frames_ = 0;       ///< frames in which truncation stopped many particles
-  std::vector<bool> handed_over_;  ///< by body
-  std::int64_t last_break_ = 0;    ///< number of the step after which a rod or spring broke last
+  RunWatchMemory memory_;
 };
 
 }  // namespace sprung

@@ -1,4 +1,4 @@
-#include "output/file_writer.h"
+#include "base/file_writer.h"
 
 #include "base/error.h"
 
@@ -40,6 +40,11 @@ class OpenFile {
     }
   }
 
+  /// Waits until all of its file system is on the disk.
+  void sync() {
+    if (::syncfs(descriptor_) != 0) fail("write", shown_, errno);
+  }
+
   // Some file systems report a full disk only on close.
   void close() {
     const int result = ::close(descriptor_);
@@ -60,6 +65,14 @@ class OpenFile {
   int descriptor_;
 };
 
+/// Waits until the names of files in a folder are on the disk. Some file systems cannot tell.
+void sync_names(const fs::path& folder) {
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  [[maybe_unused]] const int ignored = ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 void remove_quietly(const fs::path& path) {
   std::error_code ignored;
   fs::remove(path, ignored);
@@ -74,7 +87,7 @@ fs::path temporary_path(const fs::path& file) {
   return file.parent_path() / name;
 }
 
-void write_file(const fs::path& file, std::string_view text) {
+void write_file(const fs::path& file, std::string_view text, Durability durability) {
   const fs::path folder = file.parent_path();
   const fs::path temporary = temporary_path(file);
   const bool new_folder = !folder.empty() && !fs::exists(folder);
@@ -82,6 +95,7 @@ void write_file(const fs::path& file, std::string_view text) {
   try {
     OpenFile open(temporary, O_TRUNC, file);
     open.write(text);
+    if (durability == Durability::now) open.sync();
     open.close();
     if (::rename(temporary.c_str(), file.c_str()) != 0) fail("write", file, errno);
   } catch (...) {
@@ -89,6 +103,7 @@ void write_file(const fs::path& file, std::string_view text) {
     if (new_folder) remove_quietly(folder);
     throw;
   }
+  if (durability == Durability::now) sync_names(folder);
 }
 
 std::uintmax_t append_to_file(const fs::path& file, std::string_view text) {

@@ -1,8 +1,8 @@
 #include "output/output_folder.h"
 
 #include "base/error.h"
+#include "base/file_writer.h"
 #include "output/file_pattern.h"
-#include "output/file_writer.h"
 #include "output/run_summary.h"
 
 #include <algorithm>
@@ -52,25 +52,48 @@ void remove_earlier_run(const fs::path& folder) {
   fs::remove(folder / kRunSummaryFile);
 }
 
-void prepare(const fs::path& folder, bool overwrite) {
-  make_folder(folder);
-  remove_unfinished_summary(folder);
-  if (fs::is_empty(folder)) return;
-  if (!overwrite) {
-    throw FileError("write into the folder", folder.string(),
-                    "it is not empty; choose another folder, or replace its run with --overwrite");
+/// Calls `use()`. Throws FileError in place of an error of the file system.
+template <class Use>
+auto with_folder(const fs::path& folder, const Use& use) {
+  try {
+    return use();
+  } catch (const fs::filesystem_error& error) {
+    throw FileError("use the folder", folder.string(), error.path1().string() + ": " + error.code().message());
   }
-  remove_earlier_run(folder);
+}
+
+fs::path made(fs::path folder) {
+  make_folder(folder);
+  return folder;
 }
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path folder, bool overwrite) : folder_(std::move(folder)) {
-  try {
-    prepare(folder_, overwrite);
-  } catch (const fs::filesystem_error& error) {
-    throw FileError("use the folder", folder_.string(), error.path1().string() + ": " + error.code().message());
+OutputFolder::OutputFolder(fs::path folder) : folder_(made(std::move(folder))), lock_(folder_) {
+  with_folder(folder_, [&] { remove_unfinished_summary(folder_); });
+}
+
+OutputFolder::OutputFolder(fs::path folder, bool overwrite) : OutputFolder(std::move(folder)) {
+  if (is_empty()) return;
+  if (!overwrite) {
+    throw FileError("write into the folder", folder_.string(),
+                    "it is not empty; choose another folder, go on with its run by --resume, or replace it with --overwrite");
   }
+  remove_run();
+}
+
+OutputFolder OutputFolder::as_it_is(fs::path folder) { return OutputFolder(std::move(folder)); }
+
+void OutputFolder::remove_run() const {
+  with_folder(folder_, [&] { remove_earlier_run(folder_); });
+}
+
+bool OutputFolder::is_empty() const {
+  return with_folder(folder_, [&] {
+    const fs::directory_iterator files(folder_);
+    return std::all_of(begin(files), end(files),
+                       [](const fs::directory_entry& entry) { return entry.path().filename() == kLockFile; });
+  });
 }
 
 void OutputFolder::expect_free(const std::vector<std::string>& patterns) const {
@@ -89,6 +112,12 @@ std::uintmax_t OutputFolder::append(const fs::path& file, const std::string& tex
 void OutputFolder::shorten(const fs::path& file, std::uintmax_t size) const noexcept {
   std::error_code ignored;
   fs::resize_file(folder_ / file, size, ignored);
+}
+
+std::uintmax_t OutputFolder::size(const fs::path& file) const noexcept {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(folder_ / file, error);
+  return error ? 0 : size;
 }
 
 void OutputFolder::remove(const fs::path& file) const noexcept {

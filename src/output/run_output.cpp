@@ -1,6 +1,7 @@
 #include "output/run_output.h"
 
 #include "base/error.h"
+#include "base/file_writer.h"
 #include "dynamics/state/simulation_state.h"
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
@@ -23,6 +24,10 @@ namespace {
 
 constexpr const char* kDiagnosticsFile = "diagnostics.csv";
 constexpr const char* kForcesFile = "forces.csv";
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 std::string content_of(const MaterialFile& file) {
   if (file.text) return *file.text;
@@ -85,7 +90,9 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
       copies_(facts.write_obj ? copied_files(facts.sources) : std::vector<CopiedFile>()),
       has_forces_(simulator.settings().record_forces),
       recorder_(recorder_of(simulator, facts)),
-      summary_(facts, simulator.settings().step, patterns()) {
+      summary_(facts, simulator.settings().step, patterns()),
+      checkpoint_interval_(facts.checkpoint_interval) {
+  if (checkpoint_interval_ > 0.0) identity_ = identity_of(facts.scene, simulator);
   folder_.expect_free(patterns());
   const std::string head = recorder_ ? encode_head(recorder_->model(), recorder_->frame(simulator)) : "";
   if (recorder_) summary_.set_record(fingerprint(head));
@@ -100,8 +107,60 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
   }
 }
 
+RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator, const Checkpoint& from,
+                     std::string& monitor)
+    : folder_(std::move(folder)),
+      sequences_(sequences_of(simulator, facts)),
+      copies_(facts.write_obj ? copied_files(facts.sources) : std::vector<CopiedFile>()),
+      has_forces_(simulator.settings().record_forces),
+      recorder_(recorder_of(simulator, facts)),
+      summary_(facts, simulator.settings().step, patterns()),
+      checkpoint_interval_(facts.checkpoint_interval),
+      kept_(from),
+      kept_is_written_(true) {
+  RunCheckpoint run = run_checkpoint(from, folder_);
+  const auto fail = [&](const std::string& reason) { throw FileError("resume the run", folder_.path().string(), reason); };
+  if (files_of_run(folder_.path() / kRunSummaryFile) != patterns()) {
+    fail(
+        "its files would get other names; give the --format with which it began, and as few frames as its numbers have digits for");
+  }
+  for (const auto& [file, size] : {std::pair(kRecordFile, run.record_size), std::pair(kDiagnosticsFile, run.diagnostics_size),
+                                   std::pair(kForcesFile, run.forces_size)}) {
+    if (folder_.size(file) >= size) continue;
+    fail(std::string(file) +
+         " is shorter than it was at the checkpoint, so frames are missing; run the scene again with --overwrite");
+  }
+  if (recorder_) summary_.set_record(fingerprint(encode_head(recorder_->model(), recorder_->frame(simulator))));
+  identity_ = std::move(run.identity);
+  monitor = std::move(run.monitor);
+  progress_ = run.progress;
+  progress_.outcome = "running";
+  seconds_before_ = progress_.wall_seconds;
+  write_summary();
+  take_back_frames(run);
+}
+
+/// Whoever stops it can resume again: it needs only what was written before the checkpoint.
+void RunOutput::take_back_frames(const RunCheckpoint& to) {
+  folder_.shorten(kRecordFile, to.record_size);
+  folder_.shorten(kDiagnosticsFile, to.diagnostics_size);
+  folder_.shorten(kForcesFile, to.forces_size);
+  for (const ObjSequence& sequence : sequences_) {
+    if (!sequence.changes()) continue;
+    const std::filesystem::path last = folder_.path() / fill_pattern(sequence.pattern(), progress_.frames_written);
+    for (const std::filesystem::path& file : matching_files(folder_.path(), sequence.pattern())) {
+      if (file > last) folder_.remove(file.lexically_relative(folder_.path()));
+    }
+  }
+  for (const std::string& pattern : patterns()) {  // of a program that was killed
+    for (const std::filesystem::path& file : matching_files(folder_.path(), temporary_path(pattern).string())) {
+      folder_.remove(file.lexically_relative(folder_.path()));
+    }
+  }
+}
+
 std::vector<std::string> RunOutput::patterns() const {
-  std::vector<std::string> patterns{kRunSummaryFile, kDiagnosticsFile, kAnimationFile};
+  std::vector<std::string> patterns{kRunSummaryFile, kDiagnosticsFile, kAnimationFile, kCheckpointFile};
   if (recorder_) patterns.emplace_back(kRecordFile);
   if (has_forces_) patterns.emplace_back(kForcesFile);
   for (const ObjSequence& sequence : sequences_) patterns.push_back(sequence.pattern());
@@ -154,13 +213,50 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
   }
 }
 
+std::string RunOutput::note_checkpoint(const Simulator& simulator, const std::string& monitor) {
+  if (checkpoint_interval_ <= 0.0) return "";
+  if (is_resumable(simulator.state())) {
+    RunCheckpoint run;
+    run.identity = identity_;
+    run.progress = progress_;
+    run.monitor = monitor;
+    if (recorder_) run.record_size = folder_.size(kRecordFile);
+    run.diagnostics_size = folder_.size(kDiagnosticsFile);
+    if (has_forces_) run.forces_size = folder_.size(kForcesFile);
+    kept_ = checkpoint_of(simulator);
+    kept_->run = bytes_of(run);
+    kept_is_written_ = false;
+  }
+  if (kept_is_written_ || seconds_since(last_checkpoint_) < checkpoint_interval_) return "";
+  return write_checkpoint_of_run();
+}
+
+std::string RunOutput::write_last_checkpoint(const Simulator& simulator) {
+  if (checkpoint_interval_ <= 0.0 || !kept_) return "";
+  const bool is_at_frame = simulator.state().step_in_frame == 0 && simulator.state().frame + 1 == progress_.frames_written;
+  kept_->last.reset();
+  if (is_at_frame && simulator.state().step != kept_->state.step) kept_->last = simulator.state();
+  return write_checkpoint_of_run();
+}
+
+std::string RunOutput::write_checkpoint_of_run() {
+  last_checkpoint_ = std::chrono::steady_clock::now();
+  try {
+    write_checkpoint(folder_.path() / kCheckpointFile, *kept_);
+    kept_is_written_ = true;
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 void RunOutput::finish(const std::string& outcome) {
   progress_.outcome = outcome;
   write_summary();
 }
 
 void RunOutput::write_summary() {
-  progress_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  progress_.wall_seconds = seconds_before_ + seconds_since(start_);
   folder_.write(kRunSummaryFile, summary_.text(progress_));
 }
 

@@ -3,6 +3,7 @@
 
 #include "output/obj_sequence.h"
 #include "output/output_folder.h"
+#include "output/run_checkpoint.h"
 #include "output/run_recorder.h"
 #include "output/run_summary.h"
 #include "simulation/diagnostics.h"
@@ -25,19 +26,37 @@ class RunOutput {
   /// FileError, and InputError for names that are not valid folder names.
   RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator);
 
+  /// Goes on with the run of the folder after this checkpoint: takes back what was written later. `monitor` gets what the caller
+  /// gave with the checkpoint. The simulator is at the start; restore it from the checkpoint after this call. Throws FileError if
+  /// files of the run are shorter than at the checkpoint, or if they would have other names; nothing is changed then.
+  RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator, const Checkpoint& from, std::string& monitor);
+
   /// Writes the OBJ files of all bodies and moving obstacles at the simulator's present time, and the frame's part of the other
   /// files. The first call also writes the static obstacles and copies the materials of bodies. Requires the simulator of the
   /// constructor. Throws FileError; no part of the frame then remains.
   void write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics);
 
   /// Adds a warning; the next frame, or `finish`, writes it to run.json.
-  void add_warning(const std::string& warning) { summary_.add_warning(warning); }
+  void add_warning(const std::string& warning) { progress_.warnings.push_back(warning); }
+
+  /// Call it after write_frame(). Keeps the present state if a run can resume from it (see is_resumable), with what the caller
+  /// remembers of the frames so far, and writes the last state that was kept if the interval of the facts has passed since the last
+  /// checkpoint. Returns why a checkpoint could not be written; empty without a failure. A former checkpoint then stays.
+  std::string note_checkpoint(const Simulator& simulator, const std::string& monitor);
+
+  /// Call it at the end of a run: writes the last state that was kept, and the present one for scenes that begin with it. Returns
+  /// as note_checkpoint().
+  std::string write_last_checkpoint(const Simulator& simulator);
+
+  [[nodiscard]] int frames_written() const { return progress_.frames_written; }
 
   /// Writes the outcome of the run to run.json: `done`, `interrupted`, `diverged: ...`. Throws FileError.
   void finish(const std::string& outcome);
 
  private:
   void write_summary();
+  void take_back_frames(const RunCheckpoint& to);
+  std::string write_checkpoint_of_run();
   [[nodiscard]] std::vector<std::string> patterns() const;
 
   OutputFolder folder_;
@@ -48,6 +67,12 @@ class RunOutput {
   RunSummary summary_;
   RunProgress progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double seconds_before_ = 0.0;  ///< of the run, before this output was made [s], wall time
+  double checkpoint_interval_;   ///< [s]; 0: none
+  RunIdentity identity_{};       ///< empty without checkpoints
+  std::optional<Checkpoint> kept_;
+  bool kept_is_written_ = false;
+  std::chrono::steady_clock::time_point last_checkpoint_ = start_;
 };
 
 }  // namespace sprung

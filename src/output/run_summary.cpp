@@ -39,6 +39,7 @@ std::int64_t frame_of_step(std::int64_t step, std::int64_t steps_per_frame) {
 
 struct RunSummary::Document {
   Json json;
+  std::vector<std::string> warnings;  ///< of the facts
 };
 
 RunSummary::RunSummary(const RunFacts& facts, double step, const std::vector<std::string>& files)
@@ -64,18 +65,18 @@ RunSummary::RunSummary(const RunFacts& facts, double step, const std::vector<std
                      {"torn_faces", Json::array()},
                      {"broken_attachments", Json::array()},
                      {"step_adjustments", Json::array()},
-                     {"warnings", facts.warnings},
+                     {"warnings", Json::array()},
                      {"record", Json()},
                      {"files", files},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
+  document_->warnings = facts.warnings;
   for (const StepAdjustment& adjustment : facts.adjustments) document_->json["step_adjustments"].push_back(json_of(adjustment));
 }
 
 RunSummary::~RunSummary() = default;
+RunSummary::RunSummary(RunSummary&&) noexcept = default;
 
 void RunSummary::set_record(const std::string& fingerprint) { document_->json["record"] = fingerprint; }
-
-void RunSummary::add_warning(const std::string& warning) { document_->json["warnings"].push_back(warning); }
 
 std::string RunSummary::text(const RunProgress& progress) const {
   Json& json = document_->json;
@@ -102,9 +103,24 @@ std::string RunSummary::text(const RunProgress& progress) const {
                                           {"step", broken.step},
                                           {"frame", frame_of_step(broken.step, json["steps_per_frame"].get<std::int64_t>())}});
   }
+  json["warnings"] = document_->warnings;
+  for (const std::string& warning : progress.warnings) json["warnings"].push_back(warning);
   json["wall_seconds"] = progress.wall_seconds;
   // A warning may quote a file name that is not UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<WrittenRun> written_run(const std::filesystem::path& run_summary) {
+  std::ifstream stream(run_summary);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!is_run_summary(json)) return std::nullopt;
+  const Json outcome = json.value("outcome", Json());
+  const Json frames = json.value("frames_written", Json());
+  const Json scene = json.value("scene", Json());
+  return WrittenRun{.outcome = outcome.is_string() ? outcome.get<std::string>() : std::string(),
+                    .frames_written = frames.is_number_integer() ? frames.get<int>() : 0,
+                    .scene = scene.is_object() ? scene.dump() : std::string(),
+                    .files = json["files"].get<std::vector<std::string>>()};
 }
 
 std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_summary) {

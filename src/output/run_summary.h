@@ -15,6 +15,8 @@
 
 namespace sprung {
 
+inline constexpr const char* kCheckpointFile = "checkpoint.bin";
+
 inline constexpr const char* kRunSummaryFile = "run.json";
 
 /// What an export of the run as HTML writes into its folder. It is listed among the run's files, so that it goes with them.
@@ -31,11 +33,12 @@ struct RunFacts {
   std::optional<std::uint64_t> seed{};  ///< of the scene; none if nothing uses it
   std::vector<StepAdjustment> adjustments{};
   std::vector<std::string> warnings{};
-  ObjSources sources{};       ///< of bodies that are written as their files are
-  std::string scene_file{};   ///< name of the scene's file, without its folders; empty if there is none
-  BodyMaterials materials{};  ///< of bodies that have one
-  bool write_obj = true;      ///< whether frames are written as OBJ files
-  bool write_record = true;   ///< whether record.bin is written
+  ObjSources sources{};              ///< of bodies that are written as their files are
+  std::string scene_file{};          ///< name of the scene's file, without its folders; empty if there is none
+  BodyMaterials materials{};         ///< of bodies that have one
+  bool write_obj = true;             ///< whether frames are written as OBJ files
+  bool write_record = true;          ///< whether record.bin is written
+  double checkpoint_interval = 0.0;  ///< at most so often a checkpoint is written [s], wall time; 0: never
 };
 
 /// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.
@@ -73,7 +76,8 @@ struct RunProgress {
   std::vector<NewtonFrom> newton_from{};
   std::vector<TornFaces> torn_faces{};
   std::vector<BrokenAttachment> broken_attachments{};
-  double wall_seconds = 0.0;  ///< since the output was opened [s], including writing
+  double wall_seconds = 0.0;            ///< of the run so far [s], including writing
+  std::vector<std::string> warnings{};  ///< beside those of the facts
 };
 
 /// The text of run.json.
@@ -82,12 +86,10 @@ class RunSummary {
   /// `step` [s]; `files` are the patterns of all files of the run. Requires that the scene is JSON text or empty.
   RunSummary(const RunFacts& facts, double step, const std::vector<std::string>& files);
   ~RunSummary();
+  RunSummary(RunSummary&&) noexcept;
 
   /// Says which record.bin belongs to the run (see fingerprint()).
   void set_record(const std::string& fingerprint);
-
-  /// Adds to the warnings of the facts.
-  void add_warning(const std::string& warning);
 
   [[nodiscard]] std::string text(const RunProgress& progress) const;
 
@@ -95,6 +97,17 @@ class RunSummary {
   struct Document;
   std::unique_ptr<Document> document_;
 };
+
+/// What run.json says of a run that may go on.
+struct WrittenRun {
+  std::string outcome;
+  int frames_written = 0;
+  std::string scene;               ///< JSON text; empty if the run has none
+  std::vector<std::string> files;  ///< patterns
+};
+
+/// Nothing if the file cannot be read or is not a run.json of Sprung.
+[[nodiscard]] std::optional<WrittenRun> written_run(const std::filesystem::path& run_summary);
 
 /// The patterns of a run's files from its run.json; nothing if the file cannot be read or is not a run.json of Sprung.
 [[nodiscard]] std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_summary);

@@ -31,7 +31,7 @@ void add_new(std::vector<std::string>& all, const std::vector<std::string>& more
 }
 
 Simulator start(BuiltScene& built) try {
-  return Simulator(std::move(built.network), built.settings, std::move(built.obstacles));
+  return {std::move(built.network), built.settings, std::move(built.obstacles), built.start};
 } catch (const InputError& error) {
   refuse_start(error, built.weld_remedies);
 }

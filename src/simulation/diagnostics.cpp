@@ -80,7 +80,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   simulator_.check();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
 
-  FrameDiagnostics diagnostics = measure(simulator_, ++frame_);
+  FrameDiagnostics diagnostics = measure(simulator_, static_cast<int>(simulator_.state().frame) + 1);
   diagnostics.stretch_excess = all.stretch_excess;
   diagnostics.truncated = all.truncated;
   diagnostics.infeasible = all.infeasible;

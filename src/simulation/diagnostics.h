@@ -58,7 +58,6 @@ class FrameRunner {
 
  private:
   Simulator& simulator_;
-  int frame_ = 1;
 };
 
 }  // namespace sprung

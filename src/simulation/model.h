@@ -20,6 +20,16 @@ struct Scratch;
 /// Writes to a state with which settings it is made.
 void note_settings(const SimulatorSettings& settings, SimulationState& state);
 
+/// How a simulation begins, if not as its network was built: as another one of the same bodies ended. The network's positions stay
+/// those at rest.
+struct StartState {
+  Points positions{};                  ///< [m], 3 x n; empty: those of the network, and what follows is empty too
+  Points velocities{};                 ///< [m/s], 3 x n; those of pinned particles are not used
+  std::vector<double> rest_lengths{};  ///< of springs [m], if any may yield; empty: those of the network
+  std::vector<char> broken{};          ///< whether each spring is gone, if any may break; empty: none is
+  Slip slip{};                         ///< of friction; empty: none
+};
+
 struct BuildCounts {
   std::int64_t models = 0;
   std::int64_t bounds = 0;  ///< of the largest stable step
@@ -33,11 +43,12 @@ class Model {
   /// `stability` warn, `warnings` reports the latter), or if intersections remain at the start. Costs as much as several hundred
   /// steps: it finds the largest stable step, the trees of obstacles, and intersections at the start.
   [[nodiscard]] static std::shared_ptr<const Model> build(SpringNetwork network, SimulatorSettings settings = {},
-                                                          std::vector<Obstacle> obstacles = {});
+                                                          std::vector<Obstacle> obstacles = {}, const StartState& start = {});
 
   /// The same. `scratch` gets the memory in which the start was found.
   [[nodiscard]] static std::shared_ptr<const Model> build(SpringNetwork network, SimulatorSettings settings,
-                                                          std::vector<Obstacle> obstacles, std::unique_ptr<Scratch>& scratch);
+                                                          std::vector<Obstacle> obstacles, const StartState& start,
+                                                          std::unique_ptr<Scratch>& scratch);
 
   /// A model of the same particles and obstacles, which starts like another one. The largest stable step accounts for the elements
   /// that `forces` append. Throws InputError as build(), but does not look for intersections.

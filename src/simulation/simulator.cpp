@@ -3,6 +3,7 @@
 #include "base/format.h"
 #include "base/problem_list.h"
 #include "simulation/change_check.h"
+#include "simulation/checkpoint.h"
 #include "simulation/reaction_record.h"
 #include "simulation/settings/settings_check.h"
 #include "simulation/step/step_check.h"
@@ -35,8 +36,8 @@ struct Simulator::Implementation {
     stepper().initialize(true);
   }
   /// At the start.
-  Implementation(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
-      : model(Model::build(std::move(network), std::move(settings), std::move(obstacles), scratch)),
+  Implementation(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles, const StartState& start)
+      : model(Model::build(std::move(network), std::move(settings), std::move(obstacles), start, scratch)),
         state(model->initial_state()) {}
 
   Stepper stepper() { return {*model, control, state, *scratch}; }
@@ -152,7 +153,9 @@ void Simulator::Implementation::remove(std::vector<std::shared_ptr<Added>> Contr
 }
 
 Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles)
-    : implementation_(std::make_unique<Implementation>(std::move(network), std::move(settings), std::move(obstacles))) {}
+    : Simulator(std::move(network), std::move(settings), std::move(obstacles), StartState()) {}
+Simulator::Simulator(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles, const StartState& start)
+    : implementation_(std::make_unique<Implementation>(std::move(network), std::move(settings), std::move(obstacles), start)) {}
 Simulator::Simulator(const std::shared_ptr<const Model>& model)
     : implementation_(std::make_unique<Implementation>(model, Control(), model->initial_state())) {}
 Simulator::Simulator(const Simulator& other)
@@ -180,6 +183,18 @@ void Simulator::restore(const SimulationState& state) {
   if (settings().record_forces == state.impulses.on()) return;
   implementation_->state.impulses = implementation_->state.last_impulses = {};
   implementation_->stepper().begin_recording();
+}
+
+void Simulator::save(const std::filesystem::path& file) const { write_checkpoint(file, checkpoint_of(*this)); }
+
+void Simulator::load(const std::filesystem::path& file) {
+  const Checkpoint checkpoint = read_checkpoint(file);
+  std::vector<Problem> problems;
+  for (const std::string& difference : differences(checkpoint.bodies, bodies_of(model()->network()))) {
+    problems.push_back({file.string(), "", "", difference, "load it into a simulator of the same network"});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  restore(checkpoint.state);
 }
 
 StepReport Simulator::step() { return implementation_->stepper().step(); }

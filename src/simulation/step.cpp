@@ -38,6 +38,7 @@ StepReport Stepper::step() {
       make_transition(asleep);
       report = attempt(PlanReason::wake);
     }
+    if (state_.step_in_frame == 0 && state_.step - state_.caches_since >= kStepsOfCaches) clear_caches();
     return *report;
   } catch (...) {
     if (before) {
@@ -124,6 +125,13 @@ void Stepper::finish_step(std::span<const StepTrial> tried) {
 void Stepper::return_to(const SimulationState& former) {
   state_ = former;
   load();
+}
+
+/// Results depend on caches: in last digits, and in which contacts are found. A simulator that resumes a run has none, so each run
+/// clears them at the same steps.
+void Stepper::clear_caches() {
+  constraints().roll_back(state_.contact.permitted_crossings);
+  state_.caches_since = state_.step;
 }
 
 void Stepper::load() {

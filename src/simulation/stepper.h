@@ -72,6 +72,7 @@ class Stepper {
   StepTrial repeat(const StepPlan& plan);
   void finish_step(std::span<const StepTrial> tried);
   void return_to(const SimulationState& former);
+  void clear_caches();
   void load();
   void prepare_step();
   [[nodiscard]] double rotation_in_step() const;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/program.h"
-#include "output/scratch_folder.h"
+#include "base/scratch_folder.h"
 
 #include <gtest/gtest.h>
 

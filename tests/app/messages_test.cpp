@@ -3,7 +3,7 @@
 // By convention a warning is made of sentences, so that each text of src/ with a full stop is one. Refused starts, refused steps
 // and divergences of `simulation` and `scene/step_choice` have a `remedy`. Other errors of the input are many and of few forms,
 // which have rows each; the help and the table of materials are no messages.
-#include "output/scratch_folder.h"
+#include "base/scratch_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

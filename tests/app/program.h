@@ -1,7 +1,7 @@
 // Runs the program as users do, and returns its exit code and its texts.
 #pragma once
 
-#include "output/scratch_folder.h"
+#include "base/scratch_folder.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -1,8 +1,8 @@
-#include "output/file_writer.h"
+#include "base/file_writer.h"
 
 #include "base/error.h"
-#include "output/file_size_limit.h"
-#include "output/scratch_folder.h"
+#include "base/file_size_limit.h"
+#include "base/scratch_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -49,10 +49,11 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
   std::ofstream(file, std::ios::binary) << text;
 }
 
-/// All files below a folder, hidden ones too, relative to it and sorted; folders end in `/`.
+/// All files below a folder, hidden ones too, relative to it and sorted; folders end in `/`. Without the lock of a run.
 inline std::vector<std::string> listing(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().filename() == ".sprung.lock") continue;
     names.push_back(entry.path().lexically_relative(folder).string() + (entry.is_directory() ? "/" : ""));
   }
   std::sort(names.begin(), names.end());

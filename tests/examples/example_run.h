@@ -2,10 +2,10 @@
 #pragma once
 
 #include "app/program.h"
+#include "base/scratch_folder.h"
 #include "base/types.h"
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/triangle_mesh.h"
-#include "output/scratch_folder.h"
 
 #include <cstdio>
 #include <cstdlib>

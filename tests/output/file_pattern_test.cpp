@@ -1,6 +1,6 @@
 #include "output/file_pattern.h"
 
-#include "output/scratch_folder.h"
+#include "base/scratch_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

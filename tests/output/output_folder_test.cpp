@@ -1,8 +1,8 @@
 #include "output/output_folder.h"
 
 #include "base/error.h"
+#include "base/scratch_folder.h"
 #include "output/run_summary.h"
-#include "output/scratch_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 #include "output/recorded_run.h"
 
 #include "base/error.h"
+#include "base/scratch_folder.h"
 #include "output/run_output.h"
-#include "output/scratch_folder.h"
 #include "output/small_world.h"
 
 #include <gmock/gmock.h>

@@ -2,12 +2,12 @@
 #include "output/run_output.h"
 
 #include "base/error.h"
+#include "base/file_size_limit.h"
+#include "base/scratch_folder.h"
 #include "geometry/mesh/edge_division.h"
-#include "output/file_size_limit.h"
 #include "output/obj_sequence.h"
 #include "output/recorded_run.h"
 #include "output/run_recorder.h"
-#include "output/scratch_folder.h"
 #include "output/small_world.h"
 #include "simulation/model.h"
 
@@ -511,6 +511,40 @@ TEST(VertexLines, AreTheSameForEveryNumberOfVerticesAndChunks) {
   for (Eigen::Index i = 0; i < points.cols(); ++i) expected += vertex_lines(points.col(i));
   EXPECT_EQ(vertex_lines(points), expected);
   EXPECT_EQ(vertex_lines(Points(3, 0)), "");
+}
+
+TEST_F(RunOutputFiles, AFullDiskKeepsTheFormerCheckpoint) {
+  RunOutput output(OutputFolder(scratch_ / "out", false), {.frames = 3, .steps_per_frame = 2, .checkpoint_interval = 1e-9},
+                   simulator_);
+  FrameRunner runner(simulator_);
+  output.write_frame(simulator_, runner.first_frame());
+  EXPECT_EQ(output.note_checkpoint(simulator_, "memory"), "");
+  const std::string former = read_text(file("checkpoint.bin"));
+  output.write_frame(simulator_, runner.next_frame());
+  std::string failure;
+  {
+    const FileSizeLimit full(100);
+    failure = output.write_last_checkpoint(simulator_);
+  }
+  EXPECT_THAT(failure, ::testing::HasSubstr("checkpoint.bin"));
+  EXPECT_EQ(read_text(file("checkpoint.bin")), former);
+  EXPECT_THAT(listing(scratch_ / "out"), ::testing::Not(::testing::Contains(".checkpoint.bin.tmp")));
+  EXPECT_EQ(output.write_last_checkpoint(simulator_), "");
+  EXPECT_NE(read_text(file("checkpoint.bin")), former) << "it has the last state now";
+}
+
+TEST_F(RunOutputFiles, CheckpointsGiveBackWhatTheCallerRemembers) {
+  {
+    RunOutput output(OutputFolder(scratch_ / "out", false), {.frames = 9, .steps_per_frame = 2, .checkpoint_interval = 1e-9},
+                     simulator_);
+    output.write_frame(simulator_, FrameRunner(simulator_).first_frame());
+    EXPECT_EQ(output.note_checkpoint(simulator_, "memory"), "");
+  }
+  std::string memory;
+  const RunOutput resumed(OutputFolder::as_it_is(scratch_ / "out"), {.frames = 9, .steps_per_frame = 2}, simulator_,
+                          read_checkpoint(file("checkpoint.bin")), memory);
+  EXPECT_EQ(memory, "memory");
+  EXPECT_EQ(resumed.frames_written(), 1);
 }
 
 }  // namespace

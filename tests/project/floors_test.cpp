@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const std::map<std::string, int> kFloors = {{"base", 0},       {"geometry", 1}, {"network", 2}, {"collision", 2}, {"dynamics", 3},
-                                            {"simulation", 4}, {"scene", 5},    {"output", 5},  {"viewer", 6},    {"app", 7}};
+                                            {"simulation", 4}, {"output", 5},   {"scene", 6},   {"viewer", 7},    {"app", 8}};
 
 /// What the sub-folders of a folder may include of it, the lowest first. Files that stand in the folder itself are on top.
 const std::map<std::string, std::set<std::string>> kSubFloors = {
@@ -93,8 +93,8 @@ const std::vector<Library> kLibraries = {
     {"fmt/", {"app"}},
     {"sanitizer/", {"base"}},
     {"xmmintrin.h", {"base"}},
-    {"fcntl.h", {"app", "output"}},
-    {"unistd.h", {"app", "output"}},
+    {"fcntl.h", {"app", "base", "output"}},
+    {"unistd.h", {"app", "base", "output"}},
     {"sys/", {"app", "base", "output"}},
 };
 

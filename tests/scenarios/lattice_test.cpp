@@ -1,7 +1,7 @@
 // Surfaces that cells carry: the surface is judged, not the cells.
+#include "base/scratch_folder.h"
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/triangle_mesh.h"
-#include "output/scratch_folder.h"
 #include "scenarios/mesh_samples.h"
 #include "scenarios/scenario.h"
 

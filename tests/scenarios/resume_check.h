@@ -7,8 +7,8 @@
 
 namespace sprung::testing {
 
-/// Chooses a frame of a run at random, resumes a copy of the run there with new caches, and compares the positions and velocities
-/// of both in the frames that follow. Suites whose runs may differ are listed in known_resumes.txt, which may only become shorter.
+/// Chooses a step of a run at random, clears its caches there, as each run does at some frames, resumes a copy of it from the bytes
+/// of its state, and compares the positions and velocities of both in the frames that follow.
 class ResumeCheck {
  public:
   /// The run has so many frames.

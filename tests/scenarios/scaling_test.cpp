@@ -1,6 +1,6 @@
 // Scaling a scene and its gravity by a power of two scales all positions bit for bit: the code contains no absolute length or
 // speed.
-#include "output/scratch_folder.h"
+#include "base/scratch_folder.h"
 #include "scenarios/scenario.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Meshes of a material bend alike however they are triangulated.
+#include "base/scratch_folder.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "network/network_builder.h"
-#include "output/scratch_folder.h"
 #include "scenarios/mesh_samples.h"
 #include "scenarios/scenario.h"
 #include "simulation/scenes.h"

@@ -1,11 +1,9 @@
 #include "dynamics/state/simulation_state.h"
 
-#include "dynamics/state/state_bytes.h"
+#include "dynamics/state/state_members.h"
 #include "network/model/spring_network.h"
 
 #include <algorithm>
-#include <string>
-#include <string_view>
 
 namespace sprung {
 
@@ -13,23 +11,13 @@ bool Steering::operator==(const Steering& other) const {
   return pins == other.pins && obstacles == other.obstacles && std::ranges::equal(added_pins, other.added_pins, are_alike);
 }
 
-bool SimulationState::operator==(const SimulationState& other) const {
-  const auto bytes = [](const SimulationState& state) {
-    std::string all;
-    StateBytes([&](const void* data, std::size_t size) { all.append(static_cast<const char*>(data), size); }).write(state);
-    return all;
-  };
-  return bytes(*this) == bytes(other);
-}
+bool SimulationState::operator==(const SimulationState& other) const { return to_bytes(*this) == to_bytes(other); }
 
 std::uint64_t hash(const SimulationState& state) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  StateBytes([&](const void* data, std::size_t size) {
-    for (const char byte : std::string_view(static_cast<const char*>(data), size)) {
-      hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-    }
-  }).write(state);
-  return hash;
+  Fingerprint fingerprint;
+  BinaryWriter writer([&](const void* data, std::size_t size) { fingerprint.add({static_cast<const char*>(data), size}); });
+  writer.write(state);
+  return fingerprint.value();
 }
 
 SimulationState initial_state(const SpringNetwork& network) {

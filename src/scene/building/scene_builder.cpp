@@ -10,6 +10,7 @@
 #include "network/spring_pieces.h"
 #include "scene/building/attachment_resolver.h"
 #include "scene/building/body_builder.h"
+#include "scene/building/initial_state.h"
 #include "scene/building/memory_check.h"
 #include "scene/building/obstacle_builder.h"
 #include "scene/building/pin_resolver.h"
@@ -221,9 +222,11 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
     step_warning = std::move(choice.warning);
     built.network = std::move(*network);
   }
+  if (network && !scene.initial_state.empty()) begin_as_run_ended(scene, built, problems);
   problems.insert(problems.begin(), known.all.begin(), known.all.end());
   if (!problems.empty()) throw InputError(std::move(problems));
-  built.warnings = warnings_of(scene, built);
+  const std::vector<std::string> more = warnings_of(scene, built);
+  built.warnings.insert(built.warnings.end(), more.begin(), more.end());
   if (step_warning) built.warnings.push_back(std::move(*step_warning));
   return built;
 }

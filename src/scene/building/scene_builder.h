@@ -7,6 +7,7 @@
 #include "network/step_adjustment.h"
 #include "scene/format/scene.h"
 #include "scene/format/text_problems.h"
+#include "simulation/model.h"
 #include "simulation/settings/simulator_settings.h"
 
 #include <filesystem>
@@ -26,6 +27,7 @@ struct NamedReport {
 struct BuiltScene {
   SpringNetwork network;
   std::vector<Obstacle> obstacles;
+  StartState start;                  ///< empty unless the scene begins as another run ended
   SimulatorSettings settings;        ///< with the chosen step
   int frames = 1;                    ///< floor(duration * frame_rate + 1e-9) + 1
   double largest_stable_step = 0.0;  ///< [s]; infinity if every step is stable

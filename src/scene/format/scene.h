@@ -173,8 +173,9 @@ struct Scene {
   std::vector<BodyScene> bodies;            ///< in the order of the file
   std::vector<ObstacleScene> obstacles;     ///< in the order of the file
   std::vector<AttachmentScene> attachments;
-  bool write_record = true;  ///< whether a run writes record.bin
-  std::string resolved;      ///< the whole scene as JSON text, overrides applied and defaults filled in
+  std::string initial_state;  ///< folder of the run that the scene begins from; empty: none
+  bool write_record = true;   ///< whether a run writes record.bin
+  std::string resolved;       ///< the whole scene as JSON text, overrides applied and defaults filled in
 };
 
 }  // namespace sprung

@@ -135,6 +135,7 @@ Scene read_scene_fields(Fields& fields) {
   fields.optional("$schema", text());
   fields.value("version", integer(1, 1), 1);
   read_time(fields, scene);
+  scene.initial_state = fields.optional("initial_state", text()).value_or("");
   scene.bodies = fields.required("bodies", named(body_rule(), false)).value_or(std::vector<BodyScene>{});
   read_settings(fields, scene);
   check_self_contact(scene, fields.location());

@@ -99,29 +99,29 @@ EnergyGain::EnergyGain(const SpringNetwork& network, const SimulatorSettings& se
 
 void EnergyGain::note_frame(int frame, const Energies& energies) {
   if (!undriven_ || frame == 1) return;
-  const FrameEnergy now{frame, energies.kinetic + energies.of_springs() + energies.gravity};
-  max_kinetic_ = std::max(max_kinetic_, energies.kinetic);
-  if (!lowest_ || now.energy < lowest_->energy) lowest_ = now;
-  if (now.energy - lowest_->energy <= rise_end_.energy - rise_begin_.energy) return;
-  rise_begin_ = *lowest_;
-  rise_end_ = now;
+  const EnergyGainMemory::FrameEnergy now{frame, energies.kinetic + energies.of_springs() + energies.gravity};
+  memory.max_kinetic = std::max(memory.max_kinetic, energies.kinetic);
+  if (!memory.lowest || now.energy < memory.lowest->energy) memory.lowest = now;
+  if (now.energy - memory.lowest->energy <= memory.rise_end.energy - memory.rise_begin.energy) return;
+  memory.rise_begin = *memory.lowest;
+  memory.rise_end = now;
 }
 
 /// A falling particle is up to half a step's displacement, g t dt / 2, from where its speed implies; a body on a stretch limit
 /// bounces by less than the length of a spring; a resting particle moves by rounding.
 double EnergyGain::apparent_gain(const Points& positions) const {
-  const double speed = std::sqrt(2.0 * max_kinetic_ / mass_);
+  const double speed = std::sqrt(2.0 * memory.max_kinetic / mass_);
   const double height = speed * step_ + bounce_height_;
   const double rounding = rounding_speed(positions, step_);
   return mass_ * (gravity_ * height + 0.5 * rounding * rounding);
 }
 
 std::optional<std::string> EnergyGain::gain(const Points& positions) const {
-  const double gained = rise_end_.energy - rise_begin_.energy;
-  if (!(gained > kMaxGain * max_kinetic_) || gained <= apparent_gain(positions)) return std::nullopt;
-  return "the total energy rose from " + format_number(rise_begin_.energy, 3) + " J in frame " + std::to_string(rise_begin_.frame) +
-         " to " + format_number(rise_end_.energy, 3) + " J in frame " + std::to_string(rise_end_.frame) +
-         ", although nothing drives the scene. Use a smaller step or more damping.";
+  const double gained = memory.rise_end.energy - memory.rise_begin.energy;
+  if (!(gained > kMaxGain * memory.max_kinetic) || gained <= apparent_gain(positions)) return std::nullopt;
+  return "the total energy rose from " + format_number(memory.rise_begin.energy, 3) + " J in frame " +
+         std::to_string(memory.rise_begin.frame) + " to " + format_number(memory.rise_end.energy, 3) + " J in frame " +
+         std::to_string(memory.rise_end.frame) + ", although nothing drives the scene. Use a smaller step or more damping.";
 }
 
 }  // namespace sprung

@@ -65,6 +65,18 @@ class EnergyWatch {
   double capacity_;     ///< of forces and limits [J]
 };
 
+/// What EnergyGain remembers of the frames so far.
+struct EnergyGainMemory {
+  struct FrameEnergy {
+    int frame = 0;
+    double energy = 0.0;  ///< [J]
+  };
+  double max_kinetic = 0.0;           ///< of frames [J]
+  std::optional<FrameEnergy> lowest;  ///< frame of the smallest total energy
+  FrameEnergy rise_begin;             ///< of the largest rise
+  FrameEnergy rise_end;
+};
+
 /// Answers at the end of a run: did the energy rise between two frames, although nothing drives the scene?
 class EnergyGain {
  public:
@@ -78,23 +90,17 @@ class EnergyGain {
   /// moving pins or obstacles, wind, or explicit Euler, which gains energy by itself.
   [[nodiscard]] std::optional<std::string> gain(const Points& positions) const;
 
- private:
-  struct FrameEnergy {
-    int frame = 0;
-    double energy = 0.0;  ///< [J]
-  };
+  /// Of the frames so far; another run of the same scene may go on from it.
+  EnergyGainMemory memory;
 
+ private:
   [[nodiscard]] double apparent_gain(const Points& positions) const;
 
-  double mass_;                        ///< [kg]
-  double step_;                        ///< [s]
-  double gravity_;                     ///< [m/s^2]
-  double bounce_height_;               ///< length of the longest spring, with a stretch limit [m]
-  bool undriven_;                      ///< see gain()
-  double max_kinetic_ = 0.0;           ///< of frames [J]
-  std::optional<FrameEnergy> lowest_;  ///< frame of the smallest total energy
-  FrameEnergy rise_begin_;             ///< of the largest rise
-  FrameEnergy rise_end_;
+  double mass_;           ///< [kg]
+  double step_;           ///< [s]
+  double gravity_;        ///< [m/s^2]
+  double bounce_height_;  ///< length of the longest spring, with a stretch limit [m]
+  bool undriven_;         ///< see gain()
 };
 
 }  // namespace sprung

@@ -87,7 +87,7 @@ bool PinPaths::register_pins(SimulationState& state) {
   bool is_new = false;
   for (Path& path : paths_) {
     path.particles.clear();
-    if (!path.needs_grips()) {
+    if (!path.needs_grips() && !has_grips(path, state)) {
       const std::optional<double> begin = path.obstacle != nullptr ? std::optional(0.0) : std::nullopt;
       for (const Index i : path.held) path.particles.push_back({i, begin, network_.positions.col(i), {}});
       continue;
@@ -107,6 +107,14 @@ bool PinPaths::register_pins(SimulationState& state) {
   return is_new;
 }
 
+/// Whether the state has grips of the pin: see StartState.
+bool PinPaths::has_grips(const Path& path, const SimulationState& state) {
+  return std::ranges::any_of(path.held, [&](Index i) {
+    const PinGrip* known = find(state.grips, i);
+    return known != nullptr && known->from == path.pin->from;
+  });
+}
+
 /// Those of the state that this pin made, and new ones for its other particles.
 std::vector<PinGrip> PinPaths::grips_of(const Path& path, const SimulationState& state, bool& is_new) const {
   const double from = path.pin->from;
@@ -119,13 +127,14 @@ std::vector<PinGrip> PinPaths::grips_of(const Path& path, const SimulationState&
     const PinGrip* known = find(state.grips, i);
     if (known != nullptr && known->from == from && (steered.empty() || known->time >= steered.front().time)) {
       grips.push_back(*known);
-      continue;
+      if (path.sequence == nullptr || known->triangle != kNone) continue;
+    } else {
+      const double time = later ? steps_done(state) * step_length_ : 0.0;
+      const Vector3 position = later ? state.x.col(i) : network_.positions.col(i);
+      grips.push_back({.particle = i, .from = from, .time = time, .position = position});
     }
-    const double time = later ? steps_done(state) * step_length_ : 0.0;
-    const Vector3 position = later ? state.x.col(i) : network_.positions.col(i);
-    added.push_back(grips.size());
-    points.push_back(path.pose(time).inverse() * position);
-    grips.push_back({.particle = i, .from = from, .time = time, .position = position});
+    added.push_back(grips.size() - 1);
+    points.push_back(path.pose(grips.back().time).inverse() * grips.back().position);
   }
   if (added.empty()) return grips;
   is_new = true;

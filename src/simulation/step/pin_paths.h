@@ -54,6 +54,7 @@ class PinPaths {
   class Placing;
 
   void find_paths();
+  [[nodiscard]] static bool has_grips(const Path& path, const SimulationState& state);
   std::vector<PinGrip> grips_of(const Path& path, const SimulationState& state, bool& is_new) const;
 
   const SpringNetwork& network_;

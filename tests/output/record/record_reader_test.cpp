@@ -2,8 +2,8 @@
 #include "output/record/record_reader.h"
 
 #include "base/error.h"
+#include "base/scratch_folder.h"
 #include "output/record/record_encoding.h"
-#include "output/scratch_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,190 @@
+#include "output/run_checkpoint.h"
+
+#include "base/error.h"
+#include "collision/shapes/obstacle.h"
+#include "simulation/model.h"
+#include "simulation/simulator.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace sprung {
+
+template <Same<NewtonFrom> S, class Visit>
+void visit_members(S& n, const Visit& visit) {
+  visit(n.body, n.step);
+}
+template <Same<TornFaces> S, class Visit>
+void visit_members(S& t, const Visit& visit) {
+  visit(t.body, t.frame, t.faces);
+}
+template <Same<BrokenAttachment> S, class Visit>
+void visit_members(S& b, const Visit& visit) {
+  visit(b.name, b.body, b.particle, b.step);
+}
+template <Same<RunProgress> S, class Visit>
+void visit_members(S& p, const Visit& visit) {
+  visit(p.outcome, p.frames_written, p.steps, p.substeps, p.smallest_step, p.limit_solves, p.newton_from, p.torn_faces,
+        p.broken_attachments, p.wall_seconds, p.warnings);
+}
+template <Same<RunIdentity> S, class Visit>
+void visit_members(S& i, const Visit& visit) {
+  visit(i.keys, i.fingerprints);
+}
+template <Same<RunCheckpoint> S, class Visit>
+void visit_members(S& c, const Visit& visit) {
+  visit(c.identity, c.progress, c.monitor, c.record_size, c.diagnostics_size, c.forces_size);
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A list of all differences helps nobody if the scene is another one.
+constexpr std::size_t kNamedDifferences = 6;
+
+constexpr std::string_view kRemedy = "; run this scene into another folder, or replace the run with --overwrite";
+
+/// Results do not depend on where files lie, and frames that are there do not on how many follow.
+bool belongs_to_identity(const std::string& key) {
+  constexpr std::array<std::string_view, 4> kLeftOut{"duration", "file", "files", "initial_state"};
+  const std::string last = key.substr(key.rfind('.') + 1);
+  return std::ranges::find(kLeftOut, last.substr(0, last.find('['))) == kLeftOut.end();
+}
+
+void add_keys(const Json& json, const std::string& path, std::map<std::string, std::string>& keys) {
+  if (json.is_object() && !json.empty()) {
+    for (const auto& [key, value] : json.items()) add_keys(value, path.empty() ? key : path + "." + key, keys);
+  } else if (json.is_array() && !json.empty() && json.front().is_structured()) {
+    for (std::size_t k = 0; k < json.size(); ++k) add_keys(json[k], path + "[" + std::to_string(k) + "]", keys);
+  } else if (belongs_to_identity(path)) {
+    keys[path] = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+}
+
+template <class... Values>
+std::uint64_t fingerprint_of(const Values&... values) {
+  Fingerprint fingerprint;
+  (fingerprint.add(to_bytes(values)), ...);
+  return fingerprint.value();
+}
+
+std::uint64_t fingerprint_of_body(const Model& model, const Body& body) {
+  const SpringNetwork& network = model.network();
+  const SimulationState& start = model.initial_state();
+  const Springs& springs = network.springs;
+  const auto of_body = [&](const auto& list) {
+    return std::vector(list.begin() + body.first_spring, list.begin() + body.first_spring + body.spring_count);
+  };
+  return fingerprint_of(Points(network.positions.middleCols(body.first_particle, body.particle_count)),
+                        Points(start.x.middleCols(body.first_particle, body.particle_count)),
+                        Points(start.v.middleCols(body.first_particle, body.particle_count)),
+                        Scalars(network.masses.segment(body.first_particle, body.particle_count)), of_body(springs.first),
+                        of_body(springs.second), of_body(springs.rest_length), of_body(springs.stiffness),
+                        of_body(springs.damping));
+}
+
+std::uint64_t fingerprint_of_shape(const Obstacle& obstacle) {
+  if (const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry)) {
+    return fingerprint_of(mesh->mesh->vertices, mesh->mesh->triangles);
+  }
+  if (const auto* deforming = std::get_if<SequenceGeometry>(&obstacle.geometry)) {
+    return fingerprint_of(deforming->sequence->frames, deforming->sequence->triangles);
+  }
+  return 0;  // the scene says all of a primitive
+}
+
+void add(const std::string& difference, std::vector<std::string>& all) {
+  if (std::ranges::find(all, difference) == all.end()) all.push_back(difference);
+}
+
+std::vector<std::string> differences(const RunIdentity& before, const RunIdentity& now) {
+  std::vector<std::string> all;
+  for (const auto& [key, value] : before.keys) {
+    const auto present = now.keys.find(key);
+    if (present == now.keys.end()) {
+      add(key + " = " + value + " is missing", all);
+    } else if (present->second != value) {
+      add(key + " is " + present->second + ", was " + value, all);
+    }
+  }
+  for (const auto& [key, value] : now.keys) {
+    if (!before.keys.contains(key)) add(key + " = " + value + " is new", all);
+  }
+  if (!all.empty()) return all;  // what was built differs for these reasons
+  for (const auto& [name, fingerprint] : before.fingerprints) {
+    const auto present = now.fingerprints.find(name);
+    if (present != now.fingerprints.end() && present->second != fingerprint)
+      add("the mesh or the start of " + name + " is another one", all);
+  }
+  return all;
+}
+
+[[noreturn]] void fail(const OutputFolder& folder, const std::string& reason) {
+  throw FileError("resume the run", folder.path().string(), reason + std::string(kRemedy));
+}
+
+void expect_same(const OutputFolder& folder, const RunIdentity& before, const RunIdentity& now) {
+  const std::vector<std::string> found = differences(before, now);
+  if (found.empty()) return;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(found.size(), kNamedDifferences); ++k) text += (k > 0 ? "; " : "") + found[k];
+  if (found.size() > kNamedDifferences) text += "; and " + std::to_string(found.size() - kNamedDifferences) + " more";
+  fail(folder, "it is the run of another scene: " + text);
+}
+
+}  // namespace
+
+RunIdentity identity_of(const std::string& scene, const Simulator& simulator) {
+  RunIdentity identity;
+  if (!scene.empty()) add_keys(Json::parse(scene), "", identity.keys);
+  const SpringNetwork& network = simulator.model()->network();
+  for (const Body& body : network.bodies) {
+    identity.fingerprints["body \"" + body.name + "\""] = fingerprint_of_body(*simulator.model(), body);
+  }
+  for (const Obstacle& obstacle : simulator.model()->obstacles().obstacles()) {
+    identity.fingerprints["obstacle \"" + obstacle.name + "\""] = fingerprint_of_shape(obstacle);
+  }
+  return identity;
+}
+
+ResumePoint find_resume_point(const OutputFolder& folder, const RunFacts& facts, const Simulator& simulator) {
+  if (folder.is_empty()) return {};
+  const auto run = written_run(folder.path() / kRunSummaryFile);
+  if (!run) {
+    throw FileError("resume the run", folder.path().string(), "it has files but no run of sprung; choose another folder");
+  }
+  const RunIdentity now = identity_of(facts.scene, simulator);
+  ResumePoint point;
+  point.frames_written = run->frames_written;
+  std::error_code ignored;
+  if (std::filesystem::exists(folder.path() / kCheckpointFile, ignored)) {
+    point.checkpoint = read_checkpoint(folder.path() / kCheckpointFile);
+    expect_same(folder, run_checkpoint(*point.checkpoint, folder).identity, now);
+  } else if (!run->scene.empty()) {
+    RunIdentity before{.keys = {}, .fingerprints = now.fingerprints};
+    add_keys(Json::parse(run->scene), "", before.keys);
+    expect_same(folder, before, now);
+  }
+  // A run that was killed after its last frame has no outcome yet.
+  point.is_complete = run->frames_written > facts.frames || (run->frames_written == facts.frames && run->outcome == "done");
+  return point;
+}
+
+RunCheckpoint run_checkpoint(const Checkpoint& checkpoint, const OutputFolder& folder) {
+  RunCheckpoint run;
+  try {
+    from_bytes(checkpoint.run, run);
+  } catch (const BytesError&) {
+    fail(folder, std::string(kCheckpointFile) + " is not the checkpoint of a run");
+  }
+  return run;
+}
+
+std::string bytes_of(const RunCheckpoint& checkpoint) { return to_bytes(checkpoint); }
+
+}  // namespace sprung

@@ -1,0 +1,80 @@
+#include "simulation/checkpoint.h"
+
+#include "base/error.h"
+#include "base/file_writer.h"
+#include "base/sealed_file.h"
+#include "dynamics/state/state_members.h"
+#include "network/model/spring_network.h"
+#include "simulation/model.h"
+#include "simulation/simulator.h"
+
+#include <algorithm>
+
+namespace sprung {
+namespace {
+
+// Raise the number of the format when the members of a state, or of what runs add, change.
+constexpr Seal kSeal{.kind = "sprungck", .what = "a checkpoint of sprung", .version = SPRUNG_VERSION " (format 1)"};
+
+std::string text_of(const NamedCount& body) {
+  return std::to_string(body.particles) + " particles and " + std::to_string(body.springs) + " springs";
+}
+
+}  // namespace
+
+template <Same<NamedCount> S, class Visit>
+void visit_members(S& n, const Visit& visit) {
+  visit(n.name, n.particles, n.springs);
+}
+template <Same<Checkpoint> S, class Visit>
+void visit_members(S& c, const Visit& visit) {
+  visit(c.bodies, c.obstacles, c.state, c.last, c.run);
+}
+
+std::vector<NamedCount> bodies_of(const SpringNetwork& network) {
+  std::vector<NamedCount> bodies;
+  for (const Body& body : network.bodies) bodies.push_back({body.name, body.particle_count, body.spring_count});
+  return bodies;
+}
+
+Checkpoint checkpoint_of(const Simulator& simulator) {
+  Checkpoint checkpoint;
+  checkpoint.bodies = bodies_of(simulator.model()->network());
+  checkpoint.state = simulator.state();
+  for (const Obstacle& obstacle : simulator.obstacles()) checkpoint.obstacles.push_back({obstacle.name});
+  return checkpoint;
+}
+
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+  write_file(file, sealed(kSeal, to_bytes(checkpoint)), Durability::now);
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& file) {
+  const std::string bytes = read_sealed(file, kSeal);
+  Checkpoint checkpoint;
+  try {
+    from_bytes(bytes, checkpoint);
+  } catch (const BytesError&) {
+    throw FileError("read", file.string(), "it is damaged");
+  }
+  return checkpoint;
+}
+
+std::vector<std::string> differences(const std::vector<NamedCount>& bodies, const std::vector<NamedCount>& others) {
+  std::vector<std::string> texts;
+  for (const NamedCount& body : bodies) {
+    const auto other = std::ranges::find(others, body.name, &NamedCount::name);
+    if (other == others.end()) {
+      texts.push_back("body \"" + body.name + "\" is missing");
+    } else if (other->particles != body.particles || other->springs != body.springs) {
+      texts.push_back("body \"" + body.name + "\" has " + text_of(*other) + ", not " + text_of(body));
+    }
+  }
+  for (const NamedCount& other : others) {
+    if (std::ranges::find(bodies, other.name, &NamedCount::name) == bodies.end())
+      texts.push_back("body \"" + other.name + "\" is new");
+  }
+  return texts;
+}
+
+}  // namespace sprung
