@@ -1,4 +1,5 @@
-// The dampers of materials as forces of their own, so that explicit schemes can take them in shorter steps than the springs.
+// The dampers of materials as forces of their own, so that explicit schemes can apply them in several passes a step: see
+// damper_passes.h.
 #pragma once
 
 #include "dynamics/forces/element_constants.h"
@@ -7,7 +8,8 @@
 
 namespace sprung {
 
-/// Whether a body has dampers of a material: see Body::has_material_dampers.
+/// Whether a kind of springs of the body, or of any body, has dampers of a material: see Body::has_material_dampers.
+[[nodiscard]] bool has_material_dampers(const Body& body);
 [[nodiscard]] bool has_material_dampers(const SpringNetwork& network);
 
 /// Calls `function(s)` for each spring with a damper of a material.
@@ -20,12 +22,12 @@ void for_material_springs(const SpringNetwork& network, const Function& function
   }
 }
 
-/// Whether dampers of the body's face bends may bound its step: whether, in the longest step that its springs allow, a damper takes
-/// more than a tenth of a velocity.
+/// Whether the dampers of the body's face bends may bound its step: their largest rate exceeds a tenth of 1 / dt in the longest
+/// step dt that its springs alone allow.
 [[nodiscard]] bool face_bends_damp_fast(const SpringNetwork& network, const Body& body);
 
-/// Calls `function(e)` for each angle bend and face bend with a damper of a material, numbered as in `constants_of_bends`. Face
-/// bends that do not damp fast count as without one: they cost most, and as part of the other forces they act once a step.
+/// Calls `function(e)` for each angle bend and face bend with a damper of a material, numbered as in `constants_of_bends`. Leaves
+/// out face bends that do not damp fast. They are the most expensive dampers, and act once a step with the other forces.
 template <class Function>
 void for_material_bends(const SpringNetwork& network, const Function& function) {
   for (const Body& body : network.bodies) {
@@ -41,8 +43,9 @@ void for_material_bends(const SpringNetwork& network, const Function& function) 
 [[nodiscard]] ElementConstants springs_without_material_dampers(const SpringNetwork& network);
 [[nodiscard]] ElementConstants bends_without_material_dampers(const SpringNetwork& network);
 
-/// The dampers of materials alone. `most` [1/s] bounds the rate at which they damp any mode: dampers at particles where the sum of
-/// all could exceed it are weaker, in proportion, and all others are what the network gives.
+/// The dampers of materials alone. `most` [1/s] bounds the rate at which they damp any mode. Dampers at particles whose sum of
+/// damping could exceed it are weakened in proportion. All others have the damping of the network. Keeps a reference to the
+/// network.
 [[nodiscard]] Forces material_dampers(const SpringNetwork& network, double most);
 
 }  // namespace sprung

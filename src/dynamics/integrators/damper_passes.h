@@ -1,14 +1,16 @@
-// Dampers apart from the other forces: a step of the springs holds several passes over the dampers.
+// Dampers apart from the other forces: each step makes several passes over the dampers.
 //
-// At fixed positions, dampers are linear in the velocities: dv/dt = -M^-1 C v. The passes of a step evaluate a polynomial of
+// At fixed positions, dampers are linear in the velocities: dv/dt = -M^-1 C v. The s passes of a step evaluate a polynomial of
 // M^-1 C by the recurrence of Chebyshev polynomials T, as stabilized Runge-Kutta methods do (van der Houwen and Sommeijer 1980):
-//     v* = P v,  P = (T_s(w0 - w1 M^-1 C) + kOffset) / (T_s(w0) + kOffset).
-// s passes are stable up to a rate that grows with s^2. They act at the begin of a step, before the other forces. Constraints and
-// contact have then removed the velocities that they oppose, so the dampers do not change an equilibrium with them. The scheme v' =
-// P v
-// - dt M^-1 K x, x' = x + dt v' is stable if dt^2 w^2 <= 2 (1 + P) for each mode of the frequency w. The offset keeps P above 0.62.
-// Automatic steps are at most 0.9 of those that springs alone permit, so that dt^2 w^2 <= 3.24 = 2 (1 + 0.62). Momentum and angular
-// momentum are conserved, as by each damper.
+//
+//     v* = P v,  P = (T_s(w0 - w1 M^-1 C) + kOffset) / (T_s(w0) + kOffset)
+//
+// - They are stable up to a rate of about 0.27 s^2 / dt.
+// - They act at the begin of a step, before the other forces. Constraints and contact have then removed the velocities that they
+//   oppose, so the dampers do not change an equilibrium.
+// - The scheme v' = P v - dt M^-1 K x, x' = x + dt v' is stable if dt^2 w^2 <= 2 (1 + P) for each mode of the angular frequency w.
+//   Automatic steps have dt w <= 0.9 * 2, so that P >= 0.62 is needed. The offset ensures it.
+// - Momentum and angular momentum are conserved, as by each damper.
 #pragma once
 
 #include "base/types.h"
@@ -21,39 +23,40 @@ namespace sprung {
 struct SimulationState;
 struct SpringNetwork;
 
-/// Most passes over the dampers in a step: it bounds their cost.
+/// The most passes over the dampers in a step. Bounds their cost.
 inline constexpr int kMostDamperPasses = 16;
 
-/// Pass j computes v_j = last v_(j-1) + second_last v_(j-2) + gained M^-1 F(v_(j-1)).
+/// Pass j computes v_j = last v_(j-1) + second_last v_(j-2) + gain M^-1 F(v_(j-1)).
 struct DamperPass {
   double last = 1.0;
   double second_last = 0.0;
-  double gained = 0.0;   ///< [s]
-  double impulse = 0.0;  ///< the impulse of the step is the sum of these times F(v_(j-1)) [s]
+  double gain = 0.0;     ///< [s]
+  double impulse = 0.0;  ///< the dampers' impulse in the step is the sum of impulse F(v_(j-1)) over all passes [s]
 };
 
-/// The passes of a step, and the share of the last one in v*; the rest is the share of the first velocity.
+/// The passes of a step: v* = share v_s + (1 - share) v_0.
 struct DamperSeries {
   std::vector<DamperPass> passes;
   double share = 1.0;
 
-  /// P for a mode of this rate [1/s].
+  /// P for a mode that the dampers damp at this rate [1/s].
   [[nodiscard]] double factor(double rate) const;
 };
 
-/// For a step of `dt` [s]. `rate` [1/s] is the largest eigenvalue of M^-1 C. As few passes as are stable, at most
-/// kMostDamperPasses.
+/// The passes of a step of `dt` [s], as few as are stable and at most kMostDamperPasses. `rate` [1/s] is the largest eigenvalue of
+/// M^-1 C.
 [[nodiscard]] DamperSeries damper_series(double dt, double rate);
 
 /// The largest rate [1/s] for which damper_series() is stable.
 [[nodiscard]] double most_damping_rate(double dt);
 
+/// Dampers, and the passes that let them act on a state.
 class DamperPasses {
  public:
-  /// No dampers.
+  /// Without dampers. Keeps a reference to the network.
   explicit DamperPasses(const SpringNetwork& network) : network_(network) {}
 
-  /// `rate` [1/s] is the largest eigenvalue of M^-1 C, at most most_damping_rate() of the largest step.
+  /// Replaces the dampers. `rate` [1/s] is the largest eigenvalue of M^-1 C, at most most_damping_rate() of the largest step.
   void set(Forces dampers, double rate);
 
   [[nodiscard]] bool empty() const { return dampers_.empty(); }
