@@ -12,13 +12,15 @@
 namespace sprung {
 namespace {
 
-/// In times of the wave: the front in a row of springs is down to half the load by then, at any distance.
+/// How long a spring waits for the front, in times that the wave takes to it. In a row of equal springs, fronts widen as they run:
+/// an eighth of the load is left at this time, two thirds when the wave arrives.
 constexpr double kFrontWait = 2.0;
-/// A free piece swings once in four times the wave's way through it. Internal damping has four periods to take the recoil's energy.
+/// How long a spring waits for the recoil, in the same times: four periods. A piece with a free and a held end swings once in four
+/// times that a wave takes through it. With a loss factor of 0.1, half of the load is left.
 constexpr double kRecoilWait = 16.0;
-/// By which a spring exceeds its break strain if another load than the recoil acts on it.
+/// The part of its break strain by which a spring exceeds it if another load than the recoil acts on it.
 constexpr double kRecoilMargin = 0.5;
-/// Breaks are beside a tear within this number of springs. The load that a break sheds is down to a few percent there.
+/// Breaks are beside a spring at a tear within this number of springs. The load that a break sheds in a sheet decays as 1 / r^2.
 constexpr double kNearSprings = 4.0;
 
 double wave_time_across(const SpringNetwork& network, Index s) {
@@ -54,7 +56,7 @@ class SpringsAt {
   std::vector<Index> springs_;
 };
 
-/// The waves from springs of a network (Dijkstra).
+/// The waves from springs of a network, by Dijkstra's algorithm.
 class Waves {
  public:
   explicit Waves(const SpringNetwork& network) : network_(network), springs_at_(network) {}
@@ -82,8 +84,8 @@ class Waves {
     return times;
   }
 
-  /// The longest time across a structural spring at an end of this one.
-  [[nodiscard]] double unit_at(Index spring) const {
+  /// The longest time across a structural spring at an end of this one [s]: the unit in which distances to it count springs.
+  [[nodiscard]] double longest_time_across_at(Index spring) const {
     double longest = 0.0;
     for (const Index end : {network_.springs.first[spring], network_.springs.second[spring]}) {
       for (const Index s : springs_at_.of(end)) {
@@ -99,18 +101,18 @@ class Waves {
   SpringsAt springs_at_;
 };
 
-/// The wave of a break reaches particles.
-void note(const Waves& waves, Index broken, double time, std::vector<Unloading>& unloading) {
+/// Lets the springs at all particles that the wave of a break at this time [s] reaches wait for it.
+void add_break(const Waves& waves, Index broken, double time, std::vector<Unloading>& unloading) {
   const std::vector<double> times = waves.times_from(broken);
-  const double unit = waves.unit_at(broken);
+  const double across = waves.longest_time_across_at(broken);
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i])) continue;
     Unloading& at = unloading[i];
     const double front = time + kFrontWait * times[i];
     at.by_all = std::max(at.by_all, front);
     at.by_recoil = std::max(at.by_recoil, time + kRecoilWait * times[i]);
-    if (times[i] <= kNearSprings * unit) at.by_near = std::max(at.by_near, front);
-    if (times[i] <= unit) at.is_at_tear = true;
+    if (times[i] <= kNearSprings * across) at.by_near = std::max(at.by_near, front);
+    if (times[i] <= across) at.is_at_tear = true;
   }
 }
 
@@ -131,14 +133,14 @@ std::vector<Index> springs_due(const SpringNetwork& network, const Points& posit
     if (unloading.empty()) return false;
     const Unloading& a = unloading[springs.first[s]];
     const Unloading& b = unloading[springs.second[s]];
-    if (std::max(a.by_recoil, b.by_recoil) == 0.0) return false;  // nothing of its body broke
+    if (std::max(a.by_recoil, b.by_recoil) == 0.0) return false;  // no spring of its body broke
     if (awaits_front(springs, s, time, unloading)) return true;
     if ((velocities.col(springs.second[s]) - velocities.col(springs.first[s])).dot(along) < 0.0) return true;
     if (is_at_tear(a, b) || time >= std::max(a.by_recoil, b.by_recoil)) return false;
     const double longest = springs.laws[s].break_length;
     return length - longest < kRecoilMargin * (longest - springs.rest_length[s]);
   };
-  std::vector<std::pair<double, Index>> due;  // how many times too long a spring is, and its number
+  std::vector<std::pair<double, Index>> due;  // the ratio of length to break length of a spring, and its number
   for (Index s = 0; s < static_cast<Index>(springs.laws.size()); ++s) {
     const double longest = springs.laws[s].break_length;
     const Vector3 along = positions.col(springs.second[s]) - positions.col(springs.first[s]);
@@ -161,7 +163,7 @@ std::vector<Index> breaking_springs(const SpringNetwork& network, const std::vec
   for (const Index s : due) {
     if (!breaking.empty() && awaits_front(network.springs, s, time, unloading)) continue;
     breaking.push_back(s);
-    note(waves, s, time, unloading);
+    add_break(waves, s, time, unloading);
   }
   std::ranges::sort(breaking);
   return breaking;
