@@ -18,33 +18,34 @@ namespace {
 constexpr Index kChunk = 1024;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-/// Of a line, C_t: what is left of the drag of wires and cables along the wind (Hoerner 1965, chapter 3).
+/// C_t of a line: wires and cables along the wind (Hoerner 1965, chapter 3).
 constexpr double kAlongLine = 0.02;
 
-/// Force by speed, and its derivative, by size.
+/// By size: of a face [kg/(m^2 s)], of a line [kg/(m s)].
 struct Resistance {
-  double secant = 0.0;
-  double tangent = 0.0;
+  double secant = 0.0;   ///< force / speed
+  double tangent = 0.0;  ///< d force / d speed
 };
 
-/// c (u + slow) while the derivative of the force is below `limit`, then linear.
-Resistance quadratic(double coefficient, double speed, double limit, double slow = 0.0) {
-  const double rate = coefficient * (2.0 * speed + slow);
-  if (slow > 0.0) {
-    const double from = std::max(0.0, 0.5 * (limit / coefficient - slow));
-    if (speed <= from) return {coefficient * (speed + slow), rate};
+/// Of the force c u (u + low_speed) while its derivative is below `limit`, then linear. The two branches are one formula for
+/// low_speed = 0. The second one keeps the roundings of scenes with `air.surface`.
+Resistance quadratic(double coefficient, double speed, double limit, double low_speed = 0.0) {
+  const double rate = coefficient * (2.0 * speed + low_speed);
+  if (low_speed > 0.0) {
+    const double from = std::max(0.0, 0.5 * (limit / coefficient - low_speed));
+    if (speed <= from) return {coefficient * (speed + low_speed), rate};
     return {limit - coefficient * from * from / speed, limit};
   }
   if (rate <= limit) return {coefficient * speed, rate};
   return {limit * (1.0 - 0.5 * limit / rate), limit};
 }
 
-Resistance resistance(bool is_quadratic, double coefficient, double speed, double limit, double slow) {
-  return is_quadratic ? quadratic(coefficient, speed, limit, slow) : Resistance{coefficient, coefficient};
+Resistance resistance(bool is_quadratic, double coefficient, double speed, double limit, double low_speed) {
+  return is_quadratic ? quadratic(coefficient, speed, limit, low_speed) : Resistance{coefficient, coefficient};
 }
 
-/// A cylinder across the air: k (u^2 + b u^(4/3)) with k = rho d / 2 and b = 10 (nu / d)^(2/3), while the derivative is below
-/// `limit`, then linear.
+/// Of a cylinder across the air, with the force k (u^2 + b u^(4/3)), k = rho d / 2 and b = 10 (nu / d)^(2/3), while its derivative
+/// is below `limit`, then linear.
 Resistance cylinder(double diameter, double speed, double limit) {
   const double k = 0.5 * kAirDensity * diameter;
   const double b = 10.0 * std::pow(kAirViscosity / diameter, 2.0 / 3.0);
@@ -68,7 +69,8 @@ double area_of(const Points& positions, const Eigen::Array3i& corners) {
   return 0.5 * area_normal(positions.col(corners[0]), positions.col(corners[1]), positions.col(corners[2])).norm();
 }
 
-/// At rest, with the faces that are torn: what is expected of a whole body bounds the step of a torn one too.
+/// Of the body at rest [m^2], with the faces that are torn. The step was chosen for the whole body, and its expected speed has to
+/// stay.
 double total_area(const SpringNetwork& network, const Body& body) {
   const Surface& surface = body.surface;
   const Triangles triangles = surface.torn.empty() ? surface.triangles : triangulate(surface.faces);
@@ -81,10 +83,10 @@ double total_area(const SpringNetwork& network, const Body& body) {
 
 }  // namespace
 
-/// The air on a face or line. The axis is the normal of a face or the direction of a line: F = size (axial u_a + radial u_r), where
-/// u_a is the part of u along the axis and u_r the rest.
+/// The air on a face or line: F = size (axial u_a + radial u_r). u_a is the part of u along the axis and u_r the rest. The axis is
+/// the normal of a face or the direction of a line.
 struct SurfaceAirForce::Flow {
-  double size = 0.0;
+  double size = 0.0;                 ///< area [m^2] or length [m]
   Vector3 axis = Vector3::Zero();    ///< of length 1; 0 without size
   Vector3 along = Vector3::Zero();   ///< u_a [m/s]
   Vector3 across = Vector3::Zero();  ///< u_r [m/s]
@@ -109,10 +111,10 @@ struct SurfaceAirForce::Air {
   Points velocities;  ///< [m/s], 3 x n; empty if it is the mean everywhere
 };
 
-/// A particle of mass m has the share m s / S in an element of size s, with the sum S of the rest sizes of its elements. Damping
-/// D = dF/du slows an end of n at the rate D / n divided by this share; the largest of its ends is the rate of the element. No
-/// motion is slowed at a higher rate than the highest of the elements: the rows of -M^-1 dF/dv sum up to means of their rates,
-/// weighted by the shares.
+/// The damping rate of an element. A particle of mass m gives the mass m s / S to an element of rest size s, where S is the sum of
+/// the rest sizes of its elements. An element of n ends with the damping D = dF/du slows an end at the rate D / n by this mass. The
+/// largest of these is the rate of the element. The rows of -M^-1 dF/dv sum up to means of the rates, weighted by s / S, so that no
+/// motion is damped faster than the rate of the fastest element.
 SurfaceAirForce::SurfaceAirForce(const SpringNetwork& network, const SurfaceDrag& drag, Wind wind, double gravity, double step)
     : network_(network), wind_(std::move(wind)), step_(step) {
   Scalars sizes = Scalars::Zero(network.particle_count());
@@ -137,7 +139,7 @@ void SurfaceAirForce::add_body(const Body& body, const SurfaceDrag& drag, double
   if (!own && drag.is_zero()) return;
   Law& faces = laws_.emplace_back();
   faces.faces = own ? SurfaceDrag{.normal = body.drag.normal, .tangential = body.drag.tangential, .quadratic = true} : drag;
-  faces.slow = own ? kSlow : 0.0;
+  faces.low_speed = own ? kLowSpeed : 0.0;
   if (!own) {
     const double mass = network_.masses.segment(body.first_particle, body.particle_count).sum();
     faces.fall = std::sqrt(gravity * mass / (total_area(network_, body) * std::max(drag.normal, drag.tangential)));
@@ -225,7 +227,7 @@ SurfaceAirForce::Flow SurfaceAirForce::flow(const AirElement& element, const Kin
   const double of_step = kRateOfStep / (step_ * flow.size * element.rate_share);  // infinite for implicit schemes
   const double limit = std::max(law.expected, of_step);
   if (is_face) {
-    flow.axial = resistance(law.faces.quadratic, law.faces.normal, flow.along.norm(), limit, law.slow);
+    flow.axial = resistance(law.faces.quadratic, law.faces.normal, flow.along.norm(), limit, law.low_speed);
     flow.radial = resistance(law.faces.quadratic, law.faces.tangential, flow.across.norm(), limit, 0.0);
   } else {
     flow.axial = quadratic(0.5 * kAirDensity * law.diameter * kAlongLine, flow.along.norm(), limit);
@@ -249,7 +251,7 @@ void SurfaceAirForce::find_end_forces(const Kinematics& at, const Air& air, Inde
                             .normal = law.faces.normal,
                             .tangential = law.faces.tangential,
                             .quadratic = law.faces.quadratic,
-                            .slow = law.slow,
+                            .low_speed = law.low_speed,
                             .expected = law.expected,
                             .step = step_};
       find_face_forces(&elements_[begin], next - begin, of_body, end_forces.col(begin).data());
@@ -306,9 +308,9 @@ double SurfaceAirForce::largest_acceleration() const {
   double acceleration = 0.0;
   for (const Law& law : laws_) {
     const double coefficient = std::max(law.faces.normal, law.faces.tangential);
-    double pressure = coefficient * (law.faces.quadratic ? speed * (speed + law.slow) : speed);
-    if (law.diameter > 0.0) pressure = speed * cylinder(law.diameter, speed, kNoLimit).secant;
-    acceleration = std::max(acceleration, pressure * law.share);
+    double by_size = coefficient * (law.faces.quadratic ? speed * (speed + law.low_speed) : speed);
+    if (law.diameter > 0.0) by_size = speed * cylinder(law.diameter, speed, kNoLimit).secant;
+    acceleration = std::max(acceleration, by_size * law.share);
   }
   return acceleration;
 }

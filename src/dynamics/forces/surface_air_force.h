@@ -15,28 +15,28 @@ namespace sprung {
 struct Body;
 struct SpringNetwork;
 
-/// The air that flows across and along the faces of bodies, and the lines of bodies without faces. u is the velocity of the air
-/// minus that of the face or line, both as means of its ends, u_n and u_t its parts across and along. Each end has an equal share
-/// of the force.
+/// The drag of the air on the faces of bodies, and on the lines of bodies without faces. u is the velocity of the air minus that of
+/// the face or line, both as means of its ends; u_n and u_t are its parts across and along. Each end has an equal share of the
+/// force.
 ///
 /// A face of area A has the force A (normal u_n + tangential u_t), or A (normal |u_n| u_n + tangential |u_t| u_t) if the drag is
-/// quadratic. The drag is the body's own, which is quadratic, or else that of the settings. The body's own has |u_n| + kSlow in
-/// place of |u_n|.
+/// quadratic. Its coefficients are those of Body::drag, or of the settings for bodies without a drag of their own. Body::drag is
+/// quadratic, with |u_n| + kLowSpeed in place of |u_n|.
 ///
 /// A line of length l of a body that has a diameter d follows the cross-flow principle (Taylor 1952, Hoerner 1965): it has the
 /// force 1/2 rho d l (C_n |u_n| u_n + C_t |u_t| u_t). C_n = 1 + 10 Re^(-2/3) with Re = |u_n| d / nu is White's fit for cylinders
 /// (Viscous Fluid Flow) up to Re = 2e5. Below Re = 1 it continues, 20 % below Lamb's law at Re = 0.1. C_t = 0.02 is Hoerner's for
 /// wires and cables.
 ///
-/// Such drag damps the faster, the faster the air: no step of an explicit scheme would be small enough for all speeds. The step
-/// therefore counts its rate at the speed that is to be expected: that of the wind, and for the drag of the settings plus that at
-/// which the body would fall broadside, sqrt(m g / (A c)) with the larger coefficient c. Where the rate dF/du exceeds that and a
-/// quarter of 1 / step too, the force is continued linearly. The drag of bodies bounds no step in still air: the quarter leaves
-/// leapfrog schemes stable up to 0.93 of the largest stable step without it.
+/// The damping rate of quadratic drag grows with the speed, so that no explicit step is small enough for all speeds. The largest
+/// stable step therefore holds for the expected speed. For Body::drag it is that of the wind. For the drag of the settings it is
+/// that of the wind plus that at which the body would fall broadside, sqrt(m g / (A c)) with the larger coefficient c. Where the
+/// damping rate exceeds both its value at the expected speed and 1 / (4 step), the force is linear. In still air Body::drag thus
+/// bounds no step: leapfrog schemes stay stable up to 0.93 of the largest stable step without it.
 class SurfaceAirForce final : public Force {
  public:
-  /// `drag` is that of the settings. `gravity` [m/s^2] and the wind give its expected speed. `step` [s] is that of an explicit
-  /// scheme; 0: no force is continued linearly, for implicit schemes. Keeps a reference to the network.
+  /// `drag` is that of the settings. `gravity` [m/s^2], >= 0, and the wind give its expected speed. `step` [s] is that of an
+  /// explicit scheme, or 0 for implicit ones, where quadratic drag is never linear. Keeps a reference to the network.
   SurfaceAirForce(const SpringNetwork& network, const SurfaceDrag& drag, Wind wind, double gravity, double step);
 
   /// Whether it acts on nothing.
@@ -64,12 +64,12 @@ class SurfaceAirForce final : public Force {
   /// The drag of a body, by size.
   struct Law {
     SurfaceDrag faces{};
-    double slow = 0.0;      ///< kSlow for the drag of a body, across its faces [m/s]
-    double diameter = 0.0;  ///< of lines [m]; 0: the body has faces
-    double fall = 0.0;      ///< speed that is to be expected beside the wind's [m/s]
-    double expected = 0.0;  ///< dF/du at the expected speed [kg/s by size]
-    double share = 0.0;     ///< largest `rest_size * rate_share` of the body [1/kg by size]
-    Index end = 0;          ///< of its elements, which follow those of the law before
+    double low_speed = 0.0;  ///< kLowSpeed for Body::drag, 0 for the drag of the settings [m/s]
+    double diameter = 0.0;   ///< of lines [m]; 0: the body has faces
+    double fall = 0.0;       ///< expected speed in addition to that of the wind [m/s]
+    double expected = 0.0;   ///< dF/du at the expected speed, by size [kg/(m^2 s)] or [kg/(m s)]
+    double share = 0.0;      ///< largest `rest_size * rate_share` of its elements [m^2/kg] or [m/kg]
+    Index end = 0;           ///< of its elements, which follow those of the law before
   };
   struct Air;
   struct Flow;

@@ -31,7 +31,7 @@ using Faces = std::array<const AirElement*, kSimdWidth>;
   to.z = (to.z + second.z + third.z) / 3.0;
 }
 
-/// Twice the area, along the normal.
+/// Normals with a length of twice the area [m^2].
 [[gnu::always_inline]] inline void gather_area_normals(const double* points, const Faces& faces, Vector3x4& to) {
   Vector3x4 first{};
   Vector3x4 second{};
@@ -53,16 +53,16 @@ using Faces = std::array<const AirElement*, kSimdWidth>;
   square_root(length);
 }
 
-/// Force by speed and area: see `quadratic` of SurfaceAirForce.
-[[gnu::always_inline]] inline void find_secant(bool quadratic, double coefficient, double slow, const Double4& speed,
+/// The force by speed and area [kg/(m^2 s)], as `resistance` in surface_air_force.cpp.
+[[gnu::always_inline]] inline void find_secant(bool quadratic, double coefficient, double low_speed, const Double4& speed,
                                                const Double4& limit, Double4& secant) {
   secant = Double4{} + coefficient;
   if (!quadratic) return;
-  if (slow > 0.0) {
-    const Double4 end = 0.5 * (limit / coefficient - slow);
+  if (low_speed > 0.0) {
+    const Double4 end = 0.5 * (limit / coefficient - low_speed);
     const Double4 from = end > 0.0 ? end : Double4{};
     const Double4 bounded = limit - coefficient * from * from / speed;
-    secant = speed <= from ? coefficient * (speed + slow) : bounded;
+    secant = speed <= from ? coefficient * (speed + low_speed) : bounded;
     return;
   }
   const Double4 rate = 2.0 * coefficient * speed;
@@ -111,7 +111,7 @@ void find_face_forces(const AirElement* faces, Index count, const FaceAir& air, 
     const Double4 limit = expected < of_step ? of_step : expected;
     Double4 on_normal{};
     Double4 on_tangent{};
-    find_secant(air.quadratic, air.normal, air.slow, speed_across, limit, on_normal);
+    find_secant(air.quadratic, air.normal, air.low_speed, speed_across, limit, on_normal);
     find_secant(air.quadratic, air.tangential, 0.0, speed_along, limit, on_tangent);
     const Double4 x = area * (on_normal * across.x + on_tangent * along.x) / 3.0;
     const Double4 y = area * (on_normal * across.y + on_tangent * along.y) / 3.0;

@@ -1,4 +1,4 @@
-// The drag of the air on a body.
+// The drag of a body in air.
 #pragma once
 
 namespace sprung {
@@ -7,11 +7,11 @@ namespace sprung {
 inline constexpr double kAirDensity = 1.2;       ///< [kg/m^3]
 inline constexpr double kAirViscosity = 1.5e-5;  ///< kinematic [m^2/s]
 
-/// The drag of a body's faces, or of the lines of a body without faces: quadratic, and linear at low speed, as SurfaceAirForce has
-/// it. Default: none, as in vacuum. drag_in_air() has the coefficients of a shape.
+/// The drag of a body's own faces, or of its lines if it has no faces. SurfaceAirForce defines the force. Default: none, as in
+/// vacuum. drag_in_air() returns the coefficients of a shape.
 struct BodyDrag {
-  double normal = 0.0;         ///< of faces, by area and squared speed across them [kg/m^3], >= 0
-  double tangential = 0.0;     ///< of faces, by area and squared speed along them [kg/m^3], >= 0
+  double normal = 0.0;         ///< of faces: coefficient of the velocity across them [kg/m^3], >= 0
+  double tangential = 0.0;     ///< of faces: coefficient of the velocity along them [kg/m^3], >= 0
   double line_diameter = 0.0;  ///< of lines, which are cylinders [m], >= 0
 
   [[nodiscard]] bool is_zero() const { return normal == 0.0 && tangential == 0.0 && line_diameter == 0.0; }
