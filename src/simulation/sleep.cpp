@@ -1,20 +1,14 @@
+#include "dynamics/forces/material_dampers.h"
 #include "geometry/mesh/union_find.h"
 #include "simulation/stepper.h"
 
 #include <algorithm>
 
 namespace sprung {
-namespace {
-
-bool has_material(const Body& body) {
-  return std::ranges::any_of(body.has_material_dampers, [](bool has) { return has; });
-}
-
-}  // namespace
 
 bool Stepper::sleeps(Index group) const { return network().is_asleep(groups().groups[group].particles.front()); }
 
-/// Whether it has particles that are not pinned, though they may sleep.
+/// Whether the group has a particle that is not pinned. It may sleep.
 bool Stepper::is_free(Index group) const {
   return sleeps(group) || std::ranges::any_of(groups().groups[group].particles, [&](Index i) { return !network().is_fixed(i); });
 }
@@ -33,16 +27,19 @@ std::vector<char> Stepper::particles_to_sleep() const {
   return asleep;
 }
 
-/// Without contact, only bodies with a material sleep. Others swing as the laws of springs say, to the last digit: who gives each
-/// stiffness measures small motions. A force that may touch any particle may change at any time, and so may wind. Still air does
-/// not. Bodies sink into a penalty for long, and are not at rest while they do.
+/// Nothing sleeps
+/// - with penalty contact, into which bodies sink for a long time;
+/// - while a force that a program added may act on any particle, as it may change at any time;
+/// - before the wind stays the same, if it acts on a body. Still air never changes;
+/// - in scenes without contact and without a body whose springs have the dampers of a material. Their small motions may be what the
+///   scene measures.
 bool Stepper::may_sleep() const {
   return settings().sleep && work().penalty == nullptr && !work().touches_any && state_.planner.feasible_steps > 0 &&
-         (constraints().contacts().can_collide() || std::ranges::any_of(network().bodies, has_material)) &&
+         (constraints().contacts().can_collide() || has_material_dampers(network())) &&
          (time() >= settings().wind.end() || !(settings().has_air() || has_own_drag(network())));
 }
 
-/// After each step. A restless group wakes its neighbours. Groups fall asleep at the end of a window.
+/// Call it after each step. A restless group wakes its neighbours. Groups fall asleep at the end of a window.
 void Stepper::choose_sleepers() {
   if (!may_sleep()) {
     wake_all();
@@ -83,8 +80,8 @@ void Stepper::wake_driven() {
   wake_with_bodies(asleep);
 }
 
-/// A group at rest falls asleep if its neighbours are at rest too, and if it may hang, touches something, or is joined to such a
-/// group through others that sleep.
+/// A group at rest falls asleep if its neighbours are at rest too, and if it is one of steady_groups(), or joined to one through
+/// other groups that sleep.
 void Stepper::add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed) {
   std::vector<char> awake;
   for (Index p = 0; p < groups().count(); ++p)
@@ -106,7 +103,7 @@ void Stepper::add_sleepers(const std::vector<GroupPair>& pairs, const std::vecto
   }
 }
 
-/// The groups of bodies with a material, and those that touch something, without bodies that stand on their edge.
+/// The groups of bodies with dampers of a material, and the groups that touch something. Bodies that stand on their edge have none.
 std::vector<Index> Stepper::steady_groups() const {
   std::vector<std::vector<ContactNormal>> contacts(network().bodies.size());
   for (const ContactNormal& contact : contact_normals()) {
@@ -120,7 +117,7 @@ std::vector<Index> Stepper::steady_groups() const {
   std::vector<Index> steady;
   for (Index p = 0; p < groups().count(); ++p) {
     const std::size_t body = groups().groups[p].body;
-    if (stands[body] == 0 && has_material(network().bodies[body])) steady.push_back(p);
+    if (stands[body] == 0 && has_material_dampers(network().bodies[body])) steady.push_back(p);
   }
   for (std::size_t b = 0; b < contacts.size(); ++b) {
     if (stands[b] != 0) continue;
@@ -153,8 +150,8 @@ void Stepper::wake_with_bodies(const std::vector<char>& asleep) {
   }
 }
 
-/// Whether the step made a neighbour of a sleeping group restless: the step has to be made again without the sleepers that this
-/// removes from the state_.
+/// Whether the step made a neighbour of a sleeping group restless. Removes the group from the sleepers of the state then: the step
+/// has to be made again without it.
 bool Stepper::disturbs_sleep(const std::vector<GroupPair>& pairs) {
   if (network().activity.asleep.empty()) return false;
   const std::vector<char> asleep = sleeping_groups();

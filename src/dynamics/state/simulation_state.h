@@ -37,17 +37,17 @@ struct LimitMemory {
 struct MotionHistory {
   double in_frame = 0.0;       ///< the largest displacement in a frame of the present window [m]
   double displacement = 0.0;   ///< the largest one from the begin of the present window [m]
-  bool was_invisible = false;  ///< whether its motion was in the last window
+  bool was_invisible = false;  ///< whether its motion was invisible in the last window
   bool is_at_rest = false;     ///< whether it was at rest at the end of the last window
 };
 
 /// Which groups are at rest, and which sleep in the next step.
 struct RestMemory {
   std::optional<double> window_begin{};    ///< of the present window of RestDetector [s]; none at first
-  int frames = 0;                          ///< of the present window so far
+  int frames = 0;                          ///< number of completed frames of the present window
   Points x_at_frame{};                     ///< positions at the begin of the present frame [m], 3 x n
   std::array<Points, 3> x_at_begins{};     ///< those at the begins of the present window and the two before [m]
-  Points x_beside_sleep{};                 ///< those at the begin of the window or, while a neighbour sleeps, of its sleep [m]
+  Points x_beside_sleep{};                 ///< those at the begin of the window or, while a neighbour sleeps, when it fell asleep
   std::vector<MotionHistory> histories{};  ///< of each sleep group, then of each body
   std::vector<char> sleepers{};            ///< whether each sleep group sleeps in the next step
 };

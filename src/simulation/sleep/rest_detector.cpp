@@ -12,32 +12,64 @@
 namespace sprung {
 namespace {
 
-// Time between two comparisons [s].
+// [s]
 constexpr double kWindow = 0.25;
 
-constexpr int kFrames = 8;  // in a window
+// Frames of 1/32 s, near the usual frame rate of 30 1/s.
+constexpr int kFrames = 8;
 
-// A displacement that nobody sees [m].
-constexpr double kUnseen = 1.0e-4;
+// The largest invisible displacement [m]: a tenth of a pixel where 1000 pixels show a metre.
+constexpr double kInvisible = 1.0e-4;
 
-// Springs of this length [m] and longer ones scale no bound.
+// The bounds become smaller in bodies with springs below this length [m], which are shown larger.
 constexpr double kLongSpring = 0.01;
 
-// The largest displacement of a particle at rest in a window [m], and as a part of the shortest spring.
+// The largest displacement in a window of a particle that is not restless [m], and as a fraction of the shortest spring.
 constexpr double kMost = 2.5e-3;
 constexpr double kOfSpring = 0.1;
 
-// Change of the springs' force on a group that does not wake it, as a fraction of its weight.
+// The largest change of the springs' force on a sleeping group that does not wake it, as a fraction of its weight.
 constexpr double kOfWeight = 0.1;
 
-// A slide that is predicted to stop within this distance counts as stopped [m].
+// A slide whose predicted length is below this counts as stopped [m].
 constexpr double kSlide = 1.0e-3;
 
-// The part of its amplitude that a steady swing keeps in a window: it needs more than 8 s to halve it.
+// A swing that keeps more than this fraction of its amplitude in a window is steady: it needs more than 8 s to halve it.
 constexpr double kSteady = 0.98;
 
-// A slower creep needs an hour for a displacement that the eye sees [m/s].
+// Speed of a creep that takes an hour for an invisible displacement [m/s].
 constexpr double kCreep = 3.0e-8;
+
+// The squared sine of the angle between the displacements of two windows, as vectors of all particles, below which they count as
+// parallel. An angle of 1e-3 is far above roundings: the smallest displacement that counts, 7.5 nm, has one of 3e-8 at 1 m.
+constexpr double kParallel = 1.0e-6;
+
+/// Sums of products of displacements, over particles [m^2]. 0 is the window that ends, 1 and 2 are those before it.
+struct Products {
+  double of_00 = 0.0;
+  double of_11 = 0.0;
+  double of_22 = 0.0;
+  double of_01 = 0.0;
+  double of_02 = 0.0;
+  double of_12 = 0.0;
+};
+
+Products products_of(const std::vector<Index>& particles, const SimulationState& state) {
+  const std::array<Points, 3>& begins = state.rest.x_at_begins;
+  Products products;
+  for (const Index i : particles) {
+    const Vector3 now = state.x.col(i) - begins[0].col(i);
+    const Vector3 last = begins[0].col(i) - begins[1].col(i);
+    const Vector3 second_last = begins[1].col(i) - begins[2].col(i);
+    products.of_00 += now.squaredNorm();
+    products.of_11 += last.squaredNorm();
+    products.of_22 += second_last.squaredNorm();
+    products.of_01 += now.dot(last);
+    products.of_02 += now.dot(second_last);
+    products.of_12 += last.dot(second_last);
+  }
+  return products;
+}
 
 }  // namespace
 
@@ -195,40 +227,28 @@ bool RestDetector::has_moved(const Watched& group, const SimulationState& state)
       group.free, [&](Index i) { return (state.x.col(i) - state.rest.x_beside_sleep.col(i)).squaredNorm() > most * most; });
 }
 
-/// `swing` [m]: a smaller displacement in a window does not count as a swing.
+/// Whether the motion goes on: see end_window(). Smaller displacements in a window than `swing` [m] do not count as a swing.
 bool RestDetector::goes_on(const Watched& group, const SimulationState& state, double swing) {
-  const std::array<Points, 3>& begins = state.rest.x_at_begins;
-  double d00 = 0.0;  // sums of products of displacements: in this window, and in the two before
-  double d11 = 0.0;
-  double d22 = 0.0;
-  double d01 = 0.0;
-  double d02 = 0.0;
-  double d12 = 0.0;
-  for (const Index i : group.free) {
-    const Vector3 now = state.x.col(i) - begins[0].col(i);
-    const Vector3 last = begins[0].col(i) - begins[1].col(i);
-    const Vector3 second_last = begins[1].col(i) - begins[2].col(i);
-    d00 += now.squaredNorm();
-    d11 += last.squaredNorm();
-    d22 += second_last.squaredNorm();
-    d01 += now.dot(last);
-    d02 += now.dot(second_last);
-    d12 += last.dot(second_last);
-  }
-  const double displacement = std::sqrt(d00 / static_cast<double>(group.free.size()));
+  const Products d = products_of(group.free, state);
+  const auto count = static_cast<double>(group.free.size());
+  const double displacement = std::sqrt(d.of_00 / count);
   if (displacement <= kCreep * kWindow) return false;
-  if (d11 == 0.0) return true;  // it begins to move
-  const bool swings_far = std::max({d00, d11, d22}) > swing * swing * static_cast<double>(group.free.size());
-  // now = a last + b second_last. A single mode has one equation for both: its swing cannot be told from a slide that stops.
-  const double determinant = d11 * d22 - d12 * d12;
-  const bool is_single = determinant <= 1.0e-6 * d11 * d22;
-  if (is_single && swings_far) return true;
-  const double a = is_single ? d01 / d11 : (d01 * d22 - d02 * d12) / determinant;
-  const double b = is_single ? 0.0 : (d02 * d11 - d01 * d12) / determinant;
+  if (d.of_11 == 0.0) return true;  // it begins to move
+  const bool swings_far = std::max({d.of_00, d.of_11, d.of_22}) > swing * swing * count;
+  // Least squares: now = a last + b second_last. If last and second_last are parallel, only one of a and b can be found, and a
+  // swing cannot be told from a slide that stops.
+  const double determinant = d.of_11 * d.of_22 - d.of_12 * d.of_12;
+  const bool are_parallel = determinant <= kParallel * d.of_11 * d.of_22;
+  if (are_parallel && swings_far) return true;
+  const double a = are_parallel ? d.of_01 / d.of_11 : (d.of_01 * d.of_22 - d.of_02 * d.of_12) / determinant;
+  const double b = are_parallel ? 0.0 : (d.of_02 * d.of_11 - d.of_01 * d.of_12) / determinant;
+  // A mode multiplies its displacement by a root of z^2 = a z + b in each window: a slide by a positive one, a swing by a negative
+  // one or by a complex pair with the absolute value sqrt(-b).
   const double discriminant = 0.25 * a * a + b;
   if (discriminant < 0.0) return std::sqrt(-b) > kSteady && swings_far;
   const double kept = 0.5 * a + std::sqrt(discriminant);
   const double reversed = 0.5 * a - std::sqrt(discriminant);
+  // The slide is a geometric series: from the begin of this window on, it is displacement / (1 - kept) long.
   return kept >= 1.0 || displacement > kSlide * (1.0 - kept) || (reversed < -kSteady && swings_far);
 }
 
@@ -247,10 +267,10 @@ void RestDetector::judge_all(const std::vector<char>& restless, SimulationState&
 }
 
 void RestDetector::judge(const Watched& group, bool is_restless, const SimulationState& state, MotionHistory& history) {
-  const double unseen = kUnseen * group.scale();
-  const bool invisible = !is_restless && (history.in_frame <= unseen || history.displacement <= unseen);
+  const double bound = kInvisible * group.scale();
+  const bool invisible = !is_restless && (history.in_frame <= bound || history.displacement <= bound);
   history = {.was_invisible = invisible,
-             .is_at_rest = invisible && history.was_invisible && (group.free.empty() || !goes_on(group, state, unseen))};
+             .is_at_rest = invisible && history.was_invisible && (group.free.empty() || !goes_on(group, state, bound))};
 }
 
 }  // namespace sprung

@@ -1,8 +1,8 @@
 // Finds out which groups have come to rest, so that they can sleep.
 //
-// What nobody sees move is at rest, unless it moves on steadily. All groups are compared at the same times, the ends of windows of
-// a quarter of a second. The motion to come is predicted from the last three windows, as a sum of two modes that decay
-// exponentially or swing (Prony 1795): each displacement is a combination of the two displacements before it.
+// A group is at rest if its motion is invisible and is predicted to stop. All groups are judged at the same times, the ends of
+// windows of a quarter of a second. The prediction uses the displacements in the last three windows. It takes them for a sum of two
+// modes that decay exponentially or swing (Prony 1795): each displacement is then a combination of the two displacements before it.
 #pragma once
 
 #include "dynamics/state/simulation_state.h"
@@ -20,8 +20,9 @@ class RestDetector {
   RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit, const Vector3& gravity);
 
   /// Whether each group is restless. One of three is true:
-  /// - A free particle has moved by more than 2.5 mm or a tenth of the body's shortest spring. The displacement counts from the
-  ///   begin of the window. While a neighbour sleeps, it counts from when the neighbour fell asleep.
+  /// - A free particle has moved by more than 2.5 mm or a tenth of the body's shortest spring, from the begin of the window. While
+  /// a
+  ///   neighbour sleeps, the displacement counts from when the neighbour fell asleep.
   /// - Its springs pull a neighbour that sleeps, and their force on the neighbour has changed by more than a tenth of the weight of
   ///   the neighbour since the neighbour fell asleep. Friction may not balance such a change.
   /// - A spring of the body misses the stretch limit by more than wanted_excess(). The limit may then need to move any group of the
@@ -31,33 +32,37 @@ class RestDetector {
   /// Whether a window ends at `time` [s], or the first one begins.
   [[nodiscard]] static bool window_ends(double time, const SimulationState& state);
 
-  /// After each step: at the end of each eighth of a window, a frame, notes the largest displacements.
+  /// Call it after each step. At the end of each frame, an eighth of a window, updates the displacements in MotionHistory.
   void observe(double time, SimulationState& state) const;
 
-  /// At the end of a window, sets MotionHistory::is_at_rest and begins the next window. A group is at rest if its motion was
-  /// invisible in two windows and does not go on. All groups of a body are at rest too if the body as a whole is, of which a few
-  /// particles may move more. `beside` are the sleeping groups and their neighbours.
+  /// Call it at the end of a window. Sets MotionHistory::is_at_rest and begins the next window. A group is at rest if its motion
+  /// was invisible in the last two windows and does not go on. All groups of a body are at rest too if the body as a whole is: a
+  /// few of its particles may then exceed the bounds. `beside` are the sleeping groups and their neighbours.
   ///
   /// Motion is invisible if the group is not in `restless`, and the root mean square over its particles is at most
   /// - 0.1 mm of the displacements in each frame of 1/32 s, whatever the frame rate of the output is, or
   /// - 0.1 mm of the displacements from the begin of the window at the end of each frame.
   /// Both bounds are smaller in bodies with springs shorter than 1 cm, in proportion.
   ///
-  /// Motion goes on if the prediction slides on by more than a millimetre before it stops, or swings on, by more than 0.1 mm, at
-  /// more than 0.98 of its amplitude a window. If all particles move in proportion, three windows cannot tell a swing from a slide
-  /// that stops: the motion then goes on if it moved them by more than 0.1 mm in any of the three. A block that slides at a
-  /// constant speed is not at rest at any speed above 30 nm/s.
+  /// The motion goes on if the group moved faster than 30 nm/s, and one of four is true:
+  /// - The prediction is a slide of more than a millimetre, from the begin of the last window to its stop, or one that never stops.
+  /// - The prediction is a swing that keeps more than 0.98 of its amplitude in a window, and the displacement in one of the three
+  ///   windows exceeds 0.1 mm, or the smaller bound of short springs.
+  /// - This displacement exceeds that bound, and those of the two windows before are parallel, as in a swing of all particles along
+  ///   a line. Such displacements cannot tell a swing from a slide that stops.
+  /// - It did not move at all in the window before.
+  /// A block that slides at a constant speed above 30 nm/s is thus not at rest.
   void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
 
-  /// Discards all that is known of rest: each group has to come to rest again.
+  /// Discards windows and histories: each group has to come to rest again.
   static void forget(SimulationState& state);
 
  private:
   struct Watched {
     std::size_t body = 0;
     std::vector<Index> free;             ///< particles that are neither pinned nor asleep
-    double shortest = 0.0;               ///< spring of the body [m]
-    [[nodiscard]] double scale() const;  ///< of what nobody sees [1]
+    double shortest = 0.0;               ///< length of the shortest spring of the body [m]
+    [[nodiscard]] double scale() const;  ///< factor of the bounds of invisible motion, at most 1
   };
   /// A spring of the stretch limit with a free end.
   struct Limited {
