@@ -86,17 +86,19 @@ bool is_value(const Json& object, const char* key, double value) {
   return found != object.end() && found->is_number() && found->get<double>() == value;
 }
 
-/// Whether a group of the springs of a kind has its own damping.
-bool groups_give_damping(const Json& spring) {
-  const auto gives = [](const Json& group) { return group.is_object() && has_any(group, {"damping", "damping_time"}); };
+/// Whether a group of the springs of a kind has one of the keys.
+bool groups_have_any(const Json& spring, std::initializer_list<const char*> keys) {
+  const auto has_key = [&](const Json& group) { return group.is_object() && has_any(group, keys); };
   const auto groups = spring.find("groups");
-  return groups != spring.end() && groups->is_object() && std::ranges::any_of(*groups, gives);
+  return groups != spring.end() && groups->is_object() && std::ranges::any_of(*groups, has_key);
 }
 
 /// Whether springs of the body may break.
 bool may_tear(const Json& body) {
   if (!body.contains("springs") || !body["springs"].is_object()) return false;
-  return std::ranges::any_of(body["springs"], [](const Json& spring) { return spring.is_object() && spring.contains("break"); });
+  return std::ranges::any_of(body["springs"], [](const Json& spring) {
+    return spring.is_object() && (spring.contains("break") || groups_have_any(spring, {"break"}));
+  });
 }
 
 /// Fills `springs.KIND.KEY`. A material gives a stiffness to angles. Bend springs (model spring) get none from it.
@@ -111,7 +113,8 @@ void fill_spring(const std::string& key, double value, Json& body, std::array<bo
     const char* const name = key.c_str() + dot + 1;
     fill(*spring, {"damping", "damping_ratio", "damping_time"}, name, value);
     const auto number = std::ranges::find(kSpringKindNames, kind) - kSpringKindNames.begin();
-    preset_damps[static_cast<std::size_t>(number)] = is_value(*spring, name, value) && !groups_give_damping(*spring);
+    preset_damps[static_cast<std::size_t>(number)] =
+        is_value(*spring, name, value) && !groups_have_any(*spring, {"damping", "damping_time"});
   } else if (!bends || (*spring)["model"] != "spring") {
     fill(*spring, {"modulus", "stiffness"}, "modulus", value);
   }

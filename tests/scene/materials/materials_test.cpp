@@ -224,12 +224,26 @@ TEST(Materials, BodiesThatMayTearDampTheirRecoil) {
     const std::string scene = scene_of(*find_material(name), R"(, "springs": {"structural": {"break": 0.1}})");
     const BodyScene tears = folder.read(scene).bodies.front();
     EXPECT_EQ(tears.springs.structural->damping_time, kTearingDampingTime) << name;
+    EXPECT_TRUE(!tears.springs.shear || tears.springs.shear->damping_time == kTearingDampingTime) << name;
     EXPECT_TRUE(tears.preset_damps[0]) << name;
     EXPECT_LT(folder.read(scene_of(*find_material(name))).bodies.front().springs.structural->damping_time, kTearingDampingTime);
     EXPECT_EQ(
         folder.read(scene, {"bodies.thing.springs.structural.damping_time=3e-4"}).bodies.front().springs.structural->damping_time,
         3e-4);
   }
+}
+
+TEST(Materials, ABodyOfWhichOnlyAGroupMayTearDampsItsRecoilToo) {
+  const SceneFolder folder;
+  const auto damping_time = [&](const std::string& keys_of_seam) {
+    const std::string scene =
+        R"({"duration": 1, "bodies": {"dress": {"shape": {"type": "mesh", "file": "a.obj"}, "material": "cotton",
+        "springs": {"structural": {"groups": {"seam": {)" +
+        keys_of_seam + "}}}}}}}";
+    return folder.read(scene).bodies.front().springs.structural->damping_time;
+  };
+  EXPECT_LT(damping_time(R"("modulus": 50)"), kTearingDampingTime);
+  EXPECT_EQ(damping_time(R"("modulus": 50, "break": 0.2)"), kTearingDampingTime);
 }
 
 // EI and D are constants of angles, with other units than EA: broken_scenes.h has the scenes that lack a stiffness of their own.
