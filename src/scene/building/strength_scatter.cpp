@@ -35,8 +35,8 @@ void scatter_strength(const Scene& scene, const BodyScene& body, BodyShape& shap
   for (std::size_t s = 0; s < springs.laws.size(); ++s) {
     double& longest = springs.laws[s].break_length;
     const double rest = springs.rest_length[s];
-    if (springs.laws[s].breaks())
-      longest = rest + (longest - rest) * (1.0 + scene.strength_scatter * (2.0 * random_number(seed, s) - 1.0));
+    if (!springs.laws[s].breaks()) continue;
+    longest = rest + (longest - rest) * (1.0 + scene.strength_scatter * (2.0 * random_number(seed, s) - 1.0));
   }
 }
 

@@ -6,12 +6,12 @@
 
 namespace sprung {
 
-/// Multiplies the break strain of each spring of a body that has a material by a factor between 1 - s and 1 + s, s the scene's
-/// strength_scatter: uniform, and a function of the scene's seed, the name of the body and the number of the spring. Springs that
-/// do not break stay as they are.
+/// Multiplies the break strain of each spring that breaks in a body with a material by a random factor. It is uniform between 1 - s
+/// and 1 + s, where s is the scene's strength_scatter. It is a function of the scene's seed, the name of the body and the number of
+/// the spring in the body.
 void scatter_strength(const Scene& scene, const BodyScene& body, BodyShape& shape);
 
-/// Whether the run depends on the scene's seed: by pushes off symmetry or by the scatter of a strength.
+/// Whether the run depends on the scene's seed: by pushes off symmetry or by strengths that scatter.
 [[nodiscard]] bool uses_seed(const Scene& scene);
 
 }  // namespace sprung

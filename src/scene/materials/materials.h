@@ -36,8 +36,8 @@ struct Material {
   [[nodiscard]] const MaterialValue* find(std::string_view key) const;
 };
 
-/// The `damping_time` [s] of structural and shear springs of cloths and ropes of which springs may break, whatever the preset says.
-/// With less, they recoil from a tear for long, and tear again as they do.
+/// The `damping_time` [s] of structural and shear springs in cloths and ropes with springs that may break. It replaces that of the
+/// preset, which lets a torn body recoil so long that it tears again.
 inline constexpr double kTearingDampingTime = 1.1e-3;
 
 /// All presets: cloths, then ropes, then solids.

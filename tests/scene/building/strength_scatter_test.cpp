@@ -14,11 +14,15 @@
 namespace sprung {
 namespace {
 
-/// A cloth named `name`, and the keys of the scene.
+/// An entry of "bodies": a cloth whose structural springs break.
+std::string cloth_body(const std::string& name, const std::string& keys) {
+  return '"' + name + R"(": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [31, 31]}, )" + keys +
+         R"(, "springs": {"structural": {"modulus": 100, "break": 0.25}}})";
+}
+
+/// A scene with these keys and this cloth.
 std::string cloth(const std::string& keys, const std::string& name = "cloth", const std::string& body = R"("material": "cotton")") {
-  return R"({"duration": 1, )" + keys + R"("bodies": {")" + name +
-         R"(": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [31, 31]}, )" + body +
-         R"(, "springs": {"structural": {"modulus": 100, "break": 0.25}}}}})";
+  return R"({"duration": 1, )" + keys + R"("bodies": {)" + cloth_body(name, body) + "}}";
 }
 
 /// Of each spring that breaks: its break strain, in units of the one in the scene.
@@ -59,9 +63,21 @@ TEST(StrengthScatter, IsAFunctionOfSeedAndName) {
   EXPECT_NE(strengths(cloth(R"("seed": 3, )", "other")), first);
 }
 
+// A body that is added before the cloth takes the first numbers of springs and of random sequences, if these were of the scene.
+TEST(StrengthScatter, IsNoFunctionOfOtherBodies) {
+  const std::vector<double> alone = strengths(cloth(""));
+  const std::vector<double> both = strengths(R"({"duration": 1, "bodies": {)" + cloth_body("a_cloth", R"("material": "denim")") +
+                                             ", " + cloth_body("cloth", R"("material": "cotton")") + "}}");
+  ASSERT_EQ(both.size(), 2 * alone.size());
+  EXPECT_TRUE(std::equal(alone.begin(), alone.end(), both.begin() + static_cast<std::ptrdiff_t>(alone.size())));
+}
+
 TEST(StrengthScatter, IsOfBodiesWithAMaterialAlone) {
-  for (const double strength : strengths(cloth("", "cloth", R"("density": 0.2)"))) EXPECT_NEAR(strength, 1.0, kRounding);
-  for (const double strength : strengths(cloth(R"("strength_scatter": 0, )"))) EXPECT_NEAR(strength, 1.0, kRounding);
+  for (const std::string& scene : {cloth("", "cloth", R"("density": 0.2)"), cloth(R"("strength_scatter": 0, )")}) {
+    const std::vector<double> values = strengths(scene);
+    ASSERT_FALSE(values.empty());
+    for (const double strength : values) EXPECT_NEAR(strength, 1.0, kRounding);
+  }
 }
 
 TEST(StrengthScatter, LeavesAttachmentsAsTheyAre) {
