@@ -285,7 +285,7 @@ bool read_normals(Fields& fields, const std::optional<BodyShapeScene>& shape) {
   return false;
 }
 
-/// `preserve` of what has cells, `factor` of a closed mesh.
+/// `preserve` needs a body with cells, `factor` a closed mesh.
 struct VolumeScene {
   bool preserve = false;
   double factor = 0.0;

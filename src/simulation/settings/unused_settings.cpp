@@ -202,7 +202,8 @@ class Finder {
   }
 
   static constexpr const char* kNoDrag =
-      " has no effect here, because there is no drag. Give air.drag or air.surface, or give the body a material and air neither.";
+      " has no effect here, because there is no drag. Give air.drag or air.surface, or give the body a material and leave out "
+      "both.";
   static constexpr const char* kFrictionOfOneSide =
       "friction has no effect: nothing that it can touch has friction, and a pair has the geometric mean of both. "
       "Give the other side friction too.";

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -47,10 +48,14 @@ TEST(MaterialAir, AHempRopeThatSwingsLosesNineTenthsOfItsEnergyInAMinute) {
   }
 }
 
+// By the decay above, with the smallest C, the air leaves 1 / (1 + 0.0245 * 1.06 * 2.9 * 10)^2 = 0.33 of the energy after 10 s. The
+// bending of a rope takes energy in vacuum too, and slows it, so that the air takes less than from a rod: up to half is left.
 TEST(MaterialAir, VacuumTakesLess) {
   const std::vector<double> in_air = energies_of_swing(11, 10);
   const std::vector<double> in_vacuum = energies_of_swing(11, 10, {"air=false"});
-  EXPECT_LT(in_air[10], 0.9 * in_vacuum[10]);
+  std::printf("hemp after 10 s: %.1f %% of the energy in air, %.1f %% in vacuum\n", 100.0 * in_air[10] / in_air[0],
+              100.0 * in_vacuum[10] / in_vacuum[0]);
+  EXPECT_LT(in_air[10], 0.5 * in_vacuum[10]);
 }
 
 }  // namespace
