@@ -12,11 +12,12 @@
 namespace sprung {
 namespace {
 
-/// How long a spring waits for the front, in times that the wave takes to it. In a row of equal springs, fronts widen as they run:
-/// an eighth of the load is left at this time, two thirds when the wave arrives.
+/// How long a spring waits for the front, in times that the wave takes to it. Fronts widen as they run. In a row of equal springs,
+/// an eighth of the strain is left at this time, and up to a half with a loss factor of 0.1. It is two thirds when the wave
+/// arrives.
 constexpr double kFrontWait = 2.0;
 /// How long a spring waits for the recoil, in the same times: four periods. A piece with a free and a held end swings once in four
-/// times that a wave takes through it. With a loss factor of 0.1, half of the load is left.
+/// times that a wave takes through it. With a loss factor of 0.1, half of the strain is left.
 constexpr double kRecoilWait = 16.0;
 /// The part of its break strain by which a spring exceeds it if another load than the recoil acts on it.
 constexpr double kRecoilMargin = 0.5;

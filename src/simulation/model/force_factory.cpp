@@ -14,6 +14,7 @@
 #include <algorithm>
 
 namespace sprung {
+
 Forces network_forces(const SpringNetwork& network, const SimulatorSettings& settings, MaterialDampers dampers) {
   Forces forces;
   forces.push_back(std::make_unique<Gravity>(network, settings.gravity));

@@ -20,9 +20,8 @@ class RestDetector {
   RestDetector(const SpringNetwork& network, const SleepGroups& groups, const StretchLimit* limit, const Vector3& gravity);
 
   /// Whether each group is restless. One of three is true:
-  /// - A free particle has moved by more than 2.5 mm or a tenth of the body's shortest spring, from the begin of the window. While
-  /// a
-  ///   neighbour sleeps, the displacement counts from when the neighbour fell asleep.
+  /// - Since the begin of the window, a free particle has moved by more than 2.5 mm or a tenth of the body's shortest spring. While
+  ///   a neighbour sleeps, this counts from when the neighbour fell asleep.
   /// - Its springs pull a neighbour that sleeps, and their force on the neighbour has changed by more than a tenth of the weight of
   ///   the neighbour since the neighbour fell asleep. Friction may not balance such a change.
   /// - A spring of the body misses the stretch limit by more than wanted_excess(). The limit may then need to move any group of the
