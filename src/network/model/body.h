@@ -54,7 +54,7 @@ struct Body {
   double volume_factor = 0.0;    ///< of a closed surface: the multiple of its volume at rest that passes keep; 0: none
   double pressure = 0.0;         ///< in a closed surface, along the normals of its triangles [Pa]
   /// Per kind of spring, in the order of SpringKind; angle bends and face bends count as `bend`. Whether the dampers are those of a
-  /// material: no explicit scheme but explicit Euler needs smaller steps because of them.
+  /// body with a material: no explicit scheme but explicit Euler needs smaller steps because of them.
   std::array<bool, 3> has_material_dampers{};
   BodyDrag drag;  ///< of its own; none: that of the settings
 

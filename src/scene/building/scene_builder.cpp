@@ -62,7 +62,7 @@ void add_body(const Scene& scene, const BodyScene& body, const MeshFinder& finde
   auto built = build_body(scene, body, finder, problems);
   if (!built) return;
   const auto& limited = scene.limited_bodies;
-  built->shape.has_material_dampers = body.preset_damps;
+  built->shape.has_material_dampers.fill(!body.preset.empty());
   if (scene.air_of_materials && !body.preset.empty()) built->shape.drag = drag_in_air(built->shape, body.diameter);
   adjust(scene, body, built->shape, into.adjustments);
   scatter_strength(scene, body, built->shape);

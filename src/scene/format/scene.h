@@ -10,7 +10,6 @@
 #include "network/model/springs.h"
 #include "simulation/settings/simulator_settings.h"
 
-#include <array>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -115,7 +114,6 @@ struct BodyScene {
   bool preset_limits_stretch = false;  ///< whether a stretch limit stands in for the stiffness of the material
   bool preset_mass = false;            ///< whether the mass is that of the material
   double diameter = 0.0;               ///< of a rope with a material [m]
-  std::array<bool, 3> preset_damps{};  ///< whether all dampers of a kind of spring are the material's, in the order of SpringKind
   MassScene mass;
   SpringMaterials springs;
   std::vector<SpringGroupScene> spring_groups;  ///< in the order of the file

@@ -86,23 +86,19 @@ bool is_value(const Json& object, const char* key, double value) {
   return found != object.end() && found->is_number() && found->get<double>() == value;
 }
 
-/// Whether a group of the springs of a kind has one of the keys.
-bool groups_have_any(const Json& spring, std::initializer_list<const char*> keys) {
-  const auto has_key = [&](const Json& group) { return group.is_object() && has_any(group, keys); };
-  const auto groups = spring.find("groups");
-  return groups != spring.end() && groups->is_object() && std::ranges::any_of(*groups, has_key);
-}
-
 /// Whether springs of the body may break.
 bool may_tear(const Json& body) {
   if (!body.contains("springs") || !body["springs"].is_object()) return false;
-  return std::ranges::any_of(body["springs"], [](const Json& spring) {
-    return spring.is_object() && (spring.contains("break") || groups_have_any(spring, {"break"}));
+  const auto breaks = [](const Json& springs) { return springs.is_object() && springs.contains("break"); };
+  return std::ranges::any_of(body["springs"], [&](const Json& spring) {
+    if (breaks(spring)) return true;
+    const auto groups = spring.find("groups");  // the end of what is no object
+    return groups != spring.end() && groups->is_object() && std::ranges::any_of(*groups, breaks);
   });
 }
 
 /// Fills `springs.KIND.KEY`. A material gives a stiffness to angles. Bend springs (model spring) get none from it.
-void fill_spring(const std::string& key, double value, Json& body, std::array<bool, 3>& preset_damps) {
+void fill_spring(const std::string& key, double value, Json& body) {
   const std::size_t dot = key.find('.', std::string("springs.").size());
   const std::string kind = key.substr(std::string("springs.").size(), dot - std::string("springs.").size());
   const bool bends = kind == "bend";
@@ -110,19 +106,15 @@ void fill_spring(const std::string& key, double value, Json& body, std::array<bo
   if (spring == nullptr) return;
   if (bends) fill(*spring, {"model"}, "model", "angle");
   if (!key.ends_with(".modulus")) {
-    const char* const name = key.c_str() + dot + 1;
-    fill(*spring, {"damping", "damping_ratio", "damping_time"}, name, value);
-    const auto number = std::ranges::find(kSpringKindNames, kind) - kSpringKindNames.begin();
-    preset_damps[static_cast<std::size_t>(number)] =
-        is_value(*spring, name, value) && !groups_have_any(*spring, {"damping", "damping_time"});
+    fill(*spring, {"damping", "damping_ratio", "damping_time"}, key.c_str() + dot + 1, value);
   } else if (!bends || (*spring)["model"] != "spring") {
     fill(*spring, {"modulus", "stiffness"}, "modulus", value);
   }
 }
 
-void fill_value(const std::string& key, double value, Json& body, std::array<bool, 3>& preset_damps) {
+void fill_value(const std::string& key, double value, Json& body) {
   if (key.starts_with("springs.")) {
-    fill_spring(key, value, body, preset_damps);
+    fill_spring(key, value, body);
   } else if (key == "density") {
     fill(body, {"mass", "particle_mass", "density"}, "density", value);
   } else if (key == "static_friction") {
@@ -192,7 +184,7 @@ void read_preset(Fields& fields, const std::optional<BodyShapeScene>& shape, Bod
     const double factor =
         tetrahedra && value.key == "springs.structural.modulus" ? kYoungByStructural : std::pow(scale, value.power);
     const bool stretches = value.key == "springs.structural.damping_time" || value.key == "springs.shear.damping_time";
-    fill_value(value.key, tears && stretches ? kTearingDampingTime : value.value * factor, json, body.preset_damps);
+    fill_value(value.key, tears && stretches ? kTearingDampingTime : value.value * factor, json);
   }
   if (is_rope) body.diameter = diameter.value_or(preset->find("diameter")->value);
   body.preset_mass = !has_any(json, {"mass", "particle_mass"}) &&

@@ -198,24 +198,28 @@ TEST(Materials, KeysBesideTheMaterialWin) {
             SpringMaterials::BendModel::spring);
 }
 
-// Dampers of the scene bound the step, those of a material do not: also where a resolved scene repeats them.
-TEST(Materials, DampersThatTheSceneGivesAreNotTheMaterials) {
+// Also those that the scene gives, and those of a kind for which the material has none.
+TEST(Materials, AllDampersOfABodyWithAMaterialAreThoseOfAMaterial) {
   using Damps = std::array<bool, 3>;
   const SceneFolder folder;
+  const auto damps = [&](const std::string& scene) {
+    return build_scene(folder.read(scene)).network.bodies.front().has_material_dampers;
+  };
   const Material& cotton = *find_material("cotton");
-  const auto damps = [&](const std::string& keys) { return folder.read(scene_of(cotton, keys)).bodies.front().preset_damps; };
-  EXPECT_EQ(damps(""), (Damps{true, true, true}));
-  EXPECT_EQ(damps(R"(, "springs": {"shear": {"stiffness": 7}, "bend": {"damping": 0.5}})"), (Damps{true, true, false}));
-  EXPECT_EQ(damps(R"(, "springs": {"structural": {"damping_ratio": 0.5}, "shear": {"damping_time": 0.5}})"),
-            (Damps{false, false, true}));
-  const Scene again = folder.read(folder.read(scene_of(cotton)).resolved);
-  EXPECT_EQ(again.bodies.front().preset_damps, (Damps{true, true, true}));
-  EXPECT_TRUE(again.bodies.front().preset_mass);
+  EXPECT_EQ(damps(scene_of(cotton)), (Damps{true, true, true}));
+  EXPECT_EQ(damps(scene_of(cotton, R"(, "springs": {"structural": {"damping_ratio": 0.5}, "bend": {"damping": 0.5}})")),
+            (Damps{true, true, true}));
+  EXPECT_EQ(damps(scene_of(*find_material("foam"))), (Damps{true, true, true}));
+  EXPECT_EQ(damps(R"({"duration": 1, "bodies": {"thing": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0],
+            "particles": 3}, "mass": 1, "springs": {"structural": {"stiffness": 1, "damping": 1}}}}})"),
+            Damps{});
+}
+
+TEST(Materials, AResolvedSceneKeepsTheMassOfTheMaterial) {
+  const SceneFolder folder;
+  const Material& cotton = *find_material("cotton");
+  EXPECT_TRUE(folder.read(folder.read(scene_of(cotton)).resolved).bodies.front().preset_mass);
   EXPECT_FALSE(folder.read(scene_of(cotton, R"(, "density": 3)")).bodies.front().preset_mass);
-  const Material& foam = *find_material("foam");
-  EXPECT_EQ(folder.read(scene_of(foam)).bodies.front().preset_damps, (Damps{true, true, false}));
-  EXPECT_EQ(folder.read(scene_of(foam, R"(, "springs": {"structural": {"damping_ratio": 0.1}})")).bodies.front().preset_damps,
-            (Damps{false, true, false}));
 }
 
 TEST(Materials, BodiesThatMayTearDampTheirRecoil) {
@@ -225,7 +229,6 @@ TEST(Materials, BodiesThatMayTearDampTheirRecoil) {
     const BodyScene tears = folder.read(scene).bodies.front();
     EXPECT_EQ(tears.springs.structural->damping_time, kTearingDampingTime) << name;
     EXPECT_TRUE(!tears.springs.shear || tears.springs.shear->damping_time == kTearingDampingTime) << name;
-    EXPECT_TRUE(tears.preset_damps[0]) << name;
     EXPECT_LT(folder.read(scene_of(*find_material(name))).bodies.front().springs.structural->damping_time, kTearingDampingTime);
     EXPECT_EQ(
         folder.read(scene, {"bodies.thing.springs.structural.damping_time=3e-4"}).bodies.front().springs.structural->damping_time,
