@@ -126,6 +126,15 @@ std::string spring_row(const char* name, const SpringRanges& kind) {
                                     kind.rest_length.text("m")));
 }
 
+/// Whether structural springs of the body yield or break: a stretch limit leaves these out.
+bool any_fails(const Springs& springs, const Body& body) {
+  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+    const SpringLaw law = springs.law(s);
+    if (springs.kind[s] == SpringKind::structural && (law.yields() || law.breaks())) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string body_rows(const SpringNetwork& network, const Body& body, const std::string& material) {
@@ -150,8 +159,9 @@ std::string stiffness_rows(const Simulator& simulator, const Body& body) {
   const StiffnessEstimate estimate = estimate_stiffness(simulator.network(), body, gravity);
   const auto number = [](double value) { return format_number(value, kEstimateDigits); };
   const auto& limit = simulator.settings().stretch_limit;
-  const bool limited =
-      limit && body.stretch_limited && std::ranges::find(limit->kinds, SpringKind::structural) != limit->kinds.end();
+  const bool limited = limit && body.stretch_limited &&
+                       std::ranges::find(limit->kinds, SpringKind::structural) != limit->kinds.end() &&
+                       !any_fails(simulator.network().springs, body);
   const double most = limited ? limit->max_stretch * estimate.length : std::numeric_limits<double>::infinity();
   std::string sag = "nothing holds its length";
   if (estimate.sag > most) {

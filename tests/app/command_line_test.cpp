@@ -410,6 +410,18 @@ TEST_F(CommandLine, ValidateEstimatesHowStiffABodyIs) {
   EXPECT_THAT(run({"validate", save(scene)}).out, HasSubstr("sinks by 0.05 m under its weight, held by the stretch limit"));
 }
 
+// The limit of a material leaves out springs that break, and the user can change nothing about that.
+TEST_F(CommandLine, APresetThatMayTearGetsNoAdviceOnAStretchLimit) {
+  json scene = rope_scene();
+  scene["bodies"]["rope"].erase("mass");
+  scene["bodies"]["rope"]["material"] = "hemp";
+  scene["bodies"]["rope"]["springs"] = json::parse(R"({"structural": {"break": 0.1}})");
+  const Ending ending = run({"validate", save(scene)});
+  EXPECT_THAT(ending.out, HasSubstr("the scene has no errors\n"));
+  EXPECT_THAT(ending.out, Not(HasSubstr("warning")));
+  EXPECT_THAT(ending.out, Not(HasSubstr("held by the stretch limit")));
+}
+
 TEST_F(CommandLine, MaterialsListsAllOrDescribesOne) {
   const Ending all = run({"materials"});
   EXPECT_EQ(all.code, 0);

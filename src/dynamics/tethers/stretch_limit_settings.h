@@ -26,6 +26,7 @@ struct StretchLimitSettings {
   double tolerance = default_tolerance(max_stretch);  ///< passes end at this excess over the limit, relative to d, >= 0
   bool tethers = false;                               ///< particles stay within reach of their pins: see LongRangeAttachments
   Solver solver = Solver::automatic;
+  bool of_materials = false;  ///< whether it stands in for the stiffness of materials, so that nobody asked for it
 };
 
 /// Input of the automatic choice between passes and Newton's method.

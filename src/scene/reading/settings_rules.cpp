@@ -134,10 +134,12 @@ void read_settings(Fields& fields, Scene& scene) {
   const Json bodies = fields.json().value("bodies", Json());
   const auto read_limit = object_of<StretchLimitScene>([&](Fields& keys) { return read_stretch_limit(keys, bodies); });
   const std::vector<std::string> limited = bodies_limited_by_materials(scene);
+  const bool gives_limit = fields.has("stretch_limit");
   const auto limit = limited.empty() ? fields.optional("stretch_limit", read_limit)
                                      : fields.value("stretch_limit", read_limit, {{"bodies", limited}});
   if (limit) {
     settings.stretch_limit = limit->settings;
+    settings.stretch_limit->of_materials = !gives_limit;
     scene.limited_bodies = limit->bodies;
   }
   const auto contact = fields.value("contact", object_of<ContactSettings>(read_contact), Json::object());

@@ -5,6 +5,7 @@
 #include "dynamics/contact/contact_materials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sprung {
@@ -60,23 +61,30 @@ class Finder {
     }
   }
 
+  /// Springs of limited bodies that the limit leaves out or works against.
   void check_laws(const StretchLimitSettings& limit) {
     const Springs& springs = network_.springs;
+    std::vector<std::string> failing;  // bodies
+    std::vector<SpringKind> kept;      // kinds of which no spring fails
     GroupedWarnings of_bodies("body", "bodies");
+    bool limits_others = false;
+    std::array<bool, 3> is_present{};
+    std::array<bool, 3> kind_fails{};
     for (const Body& body : network_.bodies) {
+      if (!body.stretch_limited) continue;
       bool fails = false;
       bool pushes = false;
-      for (Index s = body.first_spring; body.stretch_limited && s < body.first_spring + body.spring_count; ++s) {
+      for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+        const auto kind = static_cast<std::size_t>(springs.kind[s]);
+        is_present[kind] = true;
         if (std::ranges::find(limit.kinds, springs.kind[s]) == limit.kinds.end()) continue;
         const SpringLaw law = springs.law(s);
+        kind_fails[kind] = kind_fails[kind] || law.yields() || law.breaks();
         fails = fails || law.yields() || law.breaks();
         pushes = pushes || (law.tension_only && limit.max_compression < 1.0);
       }
-      if (fails) {
-        of_bodies.add(body.name,
-                      "the stretch limit leaves out its springs that yield or break, as their load decides when they do so. "
-                      "Leave the body or the kind of springs out of the stretch limit, or remove the limit.");
-      }
+      if (fails) failing.push_back(body.name);
+      limits_others = limits_others || !fails;
       if (pushes) {
         of_bodies.add(body.name,
                       "stretch_limit.max_compression pushes its tension_only springs, which then cannot get slack. "
@@ -84,6 +92,16 @@ class Finder {
       }
     }
     add(of_bodies);
+    if (failing.empty() || limit.of_materials) return;
+    for (const SpringKind kind : limit.kinds) {
+      if (is_present[static_cast<std::size_t>(kind)] && !kind_fails[static_cast<std::size_t>(kind)]) kept.push_back(kind);
+    }
+    std::string remedy = "Remove stretch_limit";
+    if (!kept.empty()) remedy += ", or set stretch_limit.kinds to " + names_of(kept);
+    if (limits_others) remedy += ", or list only other bodies in stretch_limit.bodies";
+    warnings_.push_back(names_text("body", "bodies", failing) +
+                        ": the stretch limit leaves out springs that yield or break, as their load decides when they do so. " +
+                        remedy + ".");
   }
 
   void check_air() {

@@ -222,6 +222,17 @@ TEST(Materials, AResolvedSceneKeepsTheMassOfTheMaterial) {
   EXPECT_FALSE(folder.read(scene_of(cotton, R"(, "density": 3)")).bodies.front().preset_mass);
 }
 
+// Nobody asked for it: a scene that says nothing of a limit needs no advice about it.
+TEST(Materials, ALimitThatStandsInForStiffnessIsToldFromOneThatTheSceneGives) {
+  const SceneFolder folder;
+  const std::string scene = scene_of(*find_material("cotton"));
+  EXPECT_TRUE(folder.read(scene).settings.stretch_limit->of_materials);
+  for (const char* written :
+       {"stretch_limit={}", R"(stretch_limit={"bodies": ["thing"]})", R"(stretch_limit={"max_stretch": 0.05})"}) {
+    EXPECT_FALSE(folder.read(scene, {written}).settings.stretch_limit->of_materials) << written;
+  }
+}
+
 TEST(Materials, BodiesThatMayTearDampTheirRecoil) {
   const SceneFolder folder;
   for (const char* name : {"cotton", "hemp"}) {

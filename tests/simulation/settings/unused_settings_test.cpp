@@ -39,6 +39,7 @@ TEST(UnusedSettings, AStretchLimitLeavesOutSpringsThatFail) {
   };
   EXPECT_THAT(warnings({.yield = 0.1}, {}), ElementsAre(HasSubstr("body \"string\": the stretch limit leaves out")));
   EXPECT_THAT(warnings({.break_length = 2.0}, {}), ElementsAre(HasSubstr("the stretch limit leaves out")));
+  EXPECT_THAT(warnings({.break_length = 2.0}, {.of_materials = true}), IsEmpty());
   EXPECT_THAT(warnings({.tension_only = true}, {.max_compression = 0.5}), ElementsAre(HasSubstr("max_compression pushes")));
   EXPECT_THAT(warnings({.tension_only = true}, {}), IsEmpty());
 }
