@@ -13,6 +13,17 @@ namespace {
 // spring reaches its limit in the first pass and must not oscillate about it, so the first and last pass are not over-relaxed.
 constexpr double kRelaxation = 1.8;
 
+// While only the limit asks for another pass, the relaxation of that pass grows from 0 at the tolerance by one half for each
+// further tolerance of excess. A hanging cloth may come to rest near the tolerance. If one more pass acted with its whole strength
+// there, and over-relaxation threw springs beyond their limit, the cloth would be pulled up with speed in some steps and sink in
+// others, for ever.
+constexpr double kRelaxationGrowth = 0.5;
+
+double fading_relaxation(double tolerance, double excess) {
+  const bool is_far = excess * kRelaxationGrowth >= (kRelaxation + kRelaxationGrowth) * tolerance;
+  return is_far ? kRelaxation : kRelaxationGrowth * (excess / tolerance - 1.0);
+}
+
 // Minimum number of passes if there are constraints: a rate [1/s] and a number per substep. Errors that remain are small in small
 // steps, and the next step corrects them.
 constexpr double kConstraintPassRate = 1200.0;
@@ -133,17 +144,22 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const int passes = std::max(limit_passes, constraint_passes());
   if (projects) report.iterations = contacts_.push_out(state.x, kContactPasses - passes).passes;
   const int max_passes = constraints_.empty() ? passes : kPassesOfGrossViolation * passes;
+  double relaxation = 1.0;  // of the limit in the next pass
   report.iterations += repeat_until_settled(max_passes, [&](int pass) {
-    const bool between = pass > 0 && pass + 1 < passes;
+    const bool is_last = pass + 1 >= passes;
     const double push = projects ? contacts_.project(state.x) : 0.0;
     const double violation = sprung::project(constraints_, positions_before(state), state.x, recorder_);
     double excess = 0.0;
     if (limit_) {
-      excess = solves && pass == 0 ? limit_->excess(state.x)
-                                   : limit_->project(positions_before(state), state.x, between ? kRelaxation : 1.0, recorder_);
+      excess = solves && pass == 0
+                   ? limit_->excess(state.x)
+                   : limit_->project(positions_before(state), state.x, is_last ? std::min(relaxation, 1.0) : relaxation, recorder_);
     }
-    if (pass + 1 >= passes && (violation <= kGrossViolation || this->violation(state.x) <= kGrossViolation)) return true;
-    return (!limit_ || excess <= limit_->settings().tolerance) && violation <= 1.0 && push <= kContactTolerance;
+    if (is_last && (violation <= kGrossViolation || this->violation(state.x) <= kGrossViolation)) return true;
+    const bool others_settled = violation <= 1.0 && push <= kContactTolerance;
+    if (others_settled && (!limit_ || excess <= limit_->settings().tolerance)) return true;
+    relaxation = others_settled ? fading_relaxation(limit_->settings().tolerance, excess) : kRelaxation;
+    return false;
   });
 }
 
