@@ -15,6 +15,10 @@ namespace {
 // [s]
 constexpr double kWindow = 0.25;
 
+// Times are rounded: without a tolerance, some windows would be a step longer than others, and a steady motion would seem to
+// change.
+constexpr double kRounding = 1.0e-9;  // [s]
+
 // Frames of 1/32 s, near the usual frame rate of 30 1/s.
 constexpr int kFrames = 8;
 
@@ -36,6 +40,12 @@ constexpr double kSlide = 1.0e-3;
 
 // A swing that keeps more than this fraction of its amplitude in a window is steady: it needs more than 8 s to halve it.
 constexpr double kSteady = 0.98;
+
+// A group whose velocity changes steadily by more than this is not at rest [m/s^2]. Smaller changes are invisible for a second.
+constexpr double kAcceleration = 1.0e-4;
+
+// Two changes of velocity that differ by less than this fraction are steady.
+constexpr double kSteadyChange = 0.1;
 
 // Speed of a creep that takes an hour for an invisible displacement [m/s].
 constexpr double kCreep = 3.0e-8;
@@ -69,6 +79,16 @@ Products products_of(const std::vector<Index>& particles, const SimulationState&
     products.of_12 += last.dot(second_last);
   }
   return products;
+}
+
+/// Whether the velocity of the particles changes steadily, as in a uniform acceleration, by more than kAcceleration. A motion is
+/// slow where such a change reverses it. Compares the change in the last two windows with that in the two before: parts of the
+/// earlier change that have died away are orthogonal to the later one.
+bool accelerates(const Products& d, double count) {
+  const double change = d.of_00 - 2.0 * d.of_01 + d.of_11;            // squared
+  const double with_earlier = d.of_01 - d.of_02 - d.of_11 + d.of_12;  // product of both changes
+  const double least = kAcceleration * kWindow * kWindow;
+  return change > least * least * count && std::abs(with_earlier - change) < kSteadyChange * change;
 }
 
 }  // namespace
@@ -159,12 +179,12 @@ std::vector<Vector3> RestDetector::changes_of_pull(const SimulationState& state)
 }
 
 bool RestDetector::window_ends(double time, const SimulationState& state) {
-  return !state.rest.window_begin || time - *state.rest.window_begin >= kWindow;
+  return !state.rest.window_begin || time - *state.rest.window_begin >= kWindow - kRounding;
 }
 
 void RestDetector::observe(double time, SimulationState& state) const {
   RestMemory& rest = state.rest;
-  if (!rest.window_begin || time - *rest.window_begin < kWindow / kFrames * (rest.frames + 1)) return;
+  if (!rest.window_begin || time - *rest.window_begin < kWindow / kFrames * (rest.frames + 1) - kRounding) return;
   std::vector<double> in_frame(bodies_.size(), 0.0);  // squares
   std::vector<double> in_window(bodies_.size(), 0.0);
   const auto note = [](double in_frame_sum, double in_window_sum, std::size_t count, MotionHistory& history) {
@@ -233,7 +253,8 @@ bool RestDetector::goes_on(const Watched& group, const SimulationState& state, d
   const auto count = static_cast<double>(group.free.size());
   const double displacement = std::sqrt(d.of_00 / count);
   if (displacement <= kCreep * kWindow) return false;
-  if (d.of_11 == 0.0) return true;  // it begins to move
+  if (d.of_11 == 0.0 || d.of_22 == 0.0) return true;  // it begins to move, or has no such window yet
+  if (accelerates(d, count)) return true;
   const bool swings_far = std::max({d.of_00, d.of_11, d.of_22}) > swing * swing * count;
   // Least squares: now = a last + b second_last. If last and second_last are parallel, only one of a and b can be found, and a
   // swing cannot be told from a slide that stops.

@@ -43,13 +43,14 @@ class RestDetector {
   /// - 0.1 mm of the displacements from the begin of the window at the end of each frame.
   /// Both bounds are smaller in bodies with springs shorter than 1 cm, in proportion.
   ///
-  /// The motion goes on if the group moved faster than 30 nm/s, and one of four is true:
+  /// The motion goes on if the group moved faster than 30 nm/s, and one of five is true:
   /// - The prediction is a slide of more than a millimetre, from the begin of the last window to its stop, or one that never stops.
   /// - The prediction is a swing that keeps more than 0.98 of its amplitude in a window, and the displacement in one of the three
   ///   windows exceeds 0.1 mm, or the smaller bound of short springs.
   /// - This displacement exceeds that bound, and those of the two windows before are parallel, as in a swing of all particles along
   ///   a line. Such displacements cannot tell a swing from a slide that stops.
-  /// - It did not move at all in the window before.
+  /// - The velocity changes steadily by more than 0.1 mm/s^2, as in a reversal by gravity.
+  /// - It did not move at all in one of the two windows before, or these are not yet known.
   /// A block that slides at a constant speed above 30 nm/s is thus not at rest.
   void end_window(double time, const std::vector<char>& restless, const std::vector<char>& beside, SimulationState& state) const;
 

@@ -115,6 +115,14 @@ TEST_F(Rest, IsNoSteadySlideHoweverSlow) {
   EXPECT_LT(rests_at([&](double t) { return 1.0e-9 * t; }), 1.0) << "0.1 mm in a day";
 }
 
+// Thrown up or on a slope without friction, for a second until it turns. After 20 s it is far too fast.
+TEST_F(Rest, IsNoTurnOfASteadyAcceleration) {
+  for (const double acceleration : {1.0e-3, 5.0e-4, 1.1e-4}) {  // the bound is 0.1 mm/s^2
+    const auto path = [&](double t) { return acceleration * (t - 0.5 * t * t); };
+    EXPECT_EQ(rests_at(path), std::numeric_limits<double>::infinity()) << acceleration;
+  }
+}
+
 // What begins to fall over moves by 28 nm in the first window, and by e times as much every second. It is invisible for 10 s.
 TEST_F(Rest, IsNoMotionThatGrows) {
   EXPECT_EQ(rests_at([](double t) { return 1.0e-7 * std::exp(t); }), std::numeric_limits<double>::infinity());

@@ -103,6 +103,34 @@ TEST(RestDetector, ASlowSlideGoesOn) {
   EXPECT_NEAR(simulator.positions().row(0).mean(), 0.005, 1.0e-5);
 }
 
+/// A particle that slides without friction on ground tilted by `angle` [rad], with `velocity` [m/s]. It falls 0.1 mm first.
+Simulator slide(const Vector3& velocity, double step, double angle = 0.0) {
+  const ContactMaterial smooth{.thickness = 0.5 * kGap};
+  SimulatorSettings settings = settings_of();
+  settings.step = step;
+  return Simulator(one_particle({0.0, kGap + 1.0e-4, 0.0}, smooth, velocity), settings, {ground(smooth, angle)});
+}
+
+// The fall in the first window is longer than the slide in each. 645 steps of 1/2580 s are a window, but for roundings of the time.
+TEST(RestDetector, ASlideThatFollowsAFallGoesOn) {
+  for (const double step : {1.0e-4, 1.0 / 2580.0}) {
+    for (const double speed : {2.0e-4, 2.0e-5, 1.0e-6}) {
+      Simulator simulator = slide({speed, 0.0, 0.0}, step);
+      run(simulator, 5.0);
+      EXPECT_NEAR(simulator.positions()(0, 0), 5.0 * speed, 1.0e-6 * speed) << speed << " m/s, " << step << " s";
+    }
+  }
+}
+
+// It accelerates by 0.5 mm/s^2 down the slope, and turns after a second.
+TEST(RestDetector, ASlideUpASlopeTurns) {
+  const double acceleration = 5.0e-4;
+  Simulator simulator = slide({acceleration * 1.0, 0.0, 0.0}, 1.0e-4, acceleration / kGravity);
+  run(simulator, 4.0);
+  // -4 mm, but for the fall, which moves it by less than the height times the slope, and a step of the speed.
+  EXPECT_NEAR(simulator.positions()(0, 0), acceleration * (4.0 - 8.0), 1.0e-6);
+}
+
 void add_hanging(NetworkBuilder& builder) {
   const Index pinned = builder.add_particle({1.0, 2.0, 0.0}, 0.1);
   const Index mass = builder.add_particle({1.0, 1.0, 0.0}, 0.1);
