@@ -59,7 +59,7 @@ void Stepper::choose_sleepers() {
     state_.rest.sleepers[p] = asleep[p] != 0 && disturbed[p] == 0 ? 1 : 0;
   if (window_ends) {
     work().rest.end_window(time(), restless, with_neighbours(asleep, found.pairs), state_);
-    add_sleepers(found.pairs, disturbed);
+    add_sleepers(found, disturbed);
   }
   wake_with_bodies(asleep);
 }
@@ -80,50 +80,66 @@ void Stepper::wake_driven() {
   wake_with_bodies(asleep);
 }
 
-/// A group at rest falls asleep if its neighbours are at rest too, and if it is one of steady_groups(), or joined to one through
-/// other groups that sleep.
-void Stepper::add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed) {
+/// A group at rest falls asleep if its neighbours are at rest too, if its body settles, and if something holds it: see
+/// settling_bodies() and held_groups(). What holds a group or sleeps holds its neighbours too.
+void Stepper::add_sleepers(const Surroundings::Found& found, const std::vector<char>& disturbed) {
   std::vector<char> awake;
   for (Index p = 0; p < groups().count(); ++p)
     awake.push_back(!sleeps(p) && is_free(p) && !state_.rest.histories[p].is_at_rest ? 1 : 0);
-  const std::vector<char> beside_awake = with_neighbours(awake, pairs);
+  const std::vector<char> beside_awake = with_neighbours(awake, found.pairs);
   std::vector<char> candidates = state_.rest.sleepers;
   for (Index p = 0; p < groups().count(); ++p) {
     if (!sleeps(p) && is_free(p) && disturbed[p] == 0 && beside_awake[p] == 0) candidates[p] = 1;
   }
   UnionFind joined(groups().count());
-  for (const auto& [a, b] : groups().adjacent) {
-    if (candidates[a] != 0 && candidates[b] != 0) joined.join(a, b);
+  const auto joins = [&](Index p) { return candidates[p] != 0 || !is_free(p); };
+  for (const auto& [a, b] : found.pairs) {
+    if (joins(a) && joins(b)) joined.join(a, b);
   }
-  std::vector<char> supported(candidates.size(), 0);  // by root
-  for (Index p = 0; p < groups().count(); ++p) supported[joined.root(p)] |= state_.rest.sleepers[p];
-  for (const Index p : steady_groups()) supported[joined.root(p)] = 1;
+  const std::vector<char> holds = held_groups(found);
+  std::vector<char> held(candidates.size(), 0);  // by root
   for (Index p = 0; p < groups().count(); ++p) {
-    if (candidates[p] != 0) state_.rest.sleepers[p] = supported[joined.root(p)];
+    if (holds[p] != 0 || state_.rest.sleepers[p] != 0) held[joined.root(p)] = 1;
+  }
+  const std::vector<char> settling = settling_bodies();
+  for (Index p = 0; p < groups().count(); ++p) {
+    const bool begins = candidates[p] != 0 && settling[groups().groups[p].body] != 0 && held[joined.root(p)] != 0;
+    if (begins) state_.rest.sleepers[p] = 1;
   }
 }
 
-/// The groups of bodies with dampers of a material, and the groups that touch something. Bodies that stand on their edge have none.
-std::vector<Index> Stepper::steady_groups() const {
+/// Whether each group is held by a pin, by an attachment to an obstacle, or by an obstacle that it touches. What nothing holds
+/// falls, and is slow only at the top of its path. Where neither gravity nor wind acts, nothing needs to be held.
+std::vector<char> Stepper::held_groups(const Surroundings::Found& found) const {
+  const bool has_wind = !settings().wind.is_calm() && (settings().has_air() || has_own_drag(network()));
+  std::vector<char> held(found.boxes.size(), settings().gravity.isZero(0.0) && !has_wind ? 1 : 0);
+  for (Index i = 0; i < network().particle_count(); ++i) {
+    if (network().activity.is_pinned(i)) held[groups().group_of[i]] = 1;
+  }
+  for (const Link& link : state_.links) {
+    if (link.second.front() == kNone && !link.broken) held[groups().group_of[link.first]] = 1;
+  }
+  const std::vector<char> beside = work().surroundings.beside_obstacles(found, time());
+  for (const ContactNormal& contact : contact_normals()) {
+    const Index p = groups().group_of[contact.particle];
+    held[p] |= beside[p];
+  }
+  return held;
+}
+
+/// Whether each body settles: its springs have the dampers of a material, or it touches something. A body that stands on its edge
+/// does not.
+std::vector<char> Stepper::settling_bodies() const {
   std::vector<std::vector<ContactNormal>> contacts(network().bodies.size());
   for (const ContactNormal& contact : contact_normals()) {
     contacts[groups().groups[groups().group_of[contact.particle]].body].push_back(contact);
   }
-  std::vector<char> stands;
-  for (const std::vector<ContactNormal>& of_body : contacts) {
-    const bool touches = structure().symmetry && !of_body.empty();
-    stands.push_back(touches && structure().symmetry->has_standing(of_body, state_.x) ? 1 : 0);
-  }
-  std::vector<Index> steady;
-  for (Index p = 0; p < groups().count(); ++p) {
-    const std::size_t body = groups().groups[p].body;
-    if (stands[body] == 0 && has_material_dampers(network().bodies[body])) steady.push_back(p);
-  }
+  std::vector<char> settling;
   for (std::size_t b = 0; b < contacts.size(); ++b) {
-    if (stands[b] != 0) continue;
-    for (const ContactNormal& contact : contacts[b]) steady.push_back(groups().group_of[contact.particle]);
+    const bool stands = structure().symmetry && !contacts[b].empty() && structure().symmetry->has_standing(contacts[b], state_.x);
+    settling.push_back(!stands && (!contacts[b].empty() || has_material_dampers(network().bodies[b])) ? 1 : 0);
   }
-  return steady;
+  return settling;
 }
 
 /// If a group of `asleep` wakes, its whole body wakes: it may have lost its support. A group that an attachment joins to a free

@@ -108,8 +108,9 @@ class Stepper {
   [[nodiscard]] std::vector<char> sleeping_groups() const;
   [[nodiscard]] std::vector<char> particles_to_sleep() const;
   void choose_sleepers();
-  void add_sleepers(const std::vector<GroupPair>& pairs, const std::vector<char>& disturbed);
-  [[nodiscard]] std::vector<Index> steady_groups() const;
+  void add_sleepers(const Surroundings::Found& found, const std::vector<char>& disturbed);
+  [[nodiscard]] std::vector<char> held_groups(const Surroundings::Found& found) const;
+  [[nodiscard]] std::vector<char> settling_bodies() const;
   void wake_with_bodies(const std::vector<char>& asleep);
   [[nodiscard]] bool disturbs_sleep(const std::vector<GroupPair>& pairs);
   [[nodiscard]] bool all_sleep() const;

@@ -125,6 +125,19 @@ std::vector<char> Surroundings::driven(const Found& found, double time) const {
   return driven;
 }
 
+std::vector<char> Surroundings::beside_obstacles(const Found& found, double time) const {
+  const ObstacleFrame now(obstacles_, time, time);
+  double thickest = 0.0;
+  for (const Obstacle& obstacle : obstacles_.obstacles()) thickest = std::max(thickest, obstacle.material.thickness);
+  std::vector<char> beside;
+  std::vector<Index> near;
+  for (const Box3& box : found.boxes) {
+    now.find_near(grown(box, thickest), near);
+    beside.push_back(near.empty() ? 0 : 1);
+  }
+  return beside;
+}
+
 /// A face with a waking corner moves; all others of a sleeping group are still.
 Box3 Surroundings::box_in_step(const SleepGroup& group, const SimulationState& state) const {
   double farthest = 0.0;

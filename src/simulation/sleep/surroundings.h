@@ -31,6 +31,9 @@ class Surroundings {
   /// obstacle in reach that moves then or later. Deforming obstacles reach all boxes.
   [[nodiscard]] std::vector<char> driven(const Found& found, double time) const;
 
+  /// Whether an obstacle is within reach of each group at `time` [s].
+  [[nodiscard]] std::vector<char> beside_obstacles(const Found& found, double time) const;
+
   /// The time from which on no pin of the group begins, ends or moves, and no attachment of it changes [s]; infinity if there is
   /// no such time. A pin or attachment that follows an obstacle moves as long as the obstacle does.
   [[nodiscard]] double end_of_motions(Index group) const { return ends_[group]; }

@@ -165,6 +165,61 @@ TEST(RestDetector, ABodyThatTouchesNothingSleepsOnlyWithAMaterial) {
   }
 }
 
+/// Particles of 0.1 kg, each a body with a material.
+SpringNetwork particles_with_materials(const std::vector<Vector3>& positions, const Vector3& velocity,
+                                       const std::vector<Attachment>& attachments = {}) {
+  NetworkBuilder builder;
+  for (const Vector3& position : positions) {
+    builder.begin_body("particle " + std::to_string(position[1]), kRough);
+    builder.add_particle(position, 0.1, velocity);
+  }
+  for (const Attachment& attachment : attachments) builder.add_attachment(attachment);
+  SpringNetwork network = builder.build();
+  for (Body& body : network.bodies) body.has_material_dampers = {true, false, false};
+  return network;
+}
+
+// They turn after a second, 5 um above their start. In two seconds more they fall 20 um from there.
+TEST(RestDetector, WhatNothingHoldsFalls) {
+  const double gravity = 1.0e-5;
+  const Vector3 up = gravity * 1.0 * Vector3::UnitY();
+  const Attachment rod{.name = "rod", .particles = {0}, .second = ParticleEnds{.particles = {1}}};
+  const std::vector<SpringNetwork> scenes = {
+      particles_with_materials({{0.0, 1.0, 0.0}}, up), particles_with_materials({{0.0, 1.0, 0.0}, {0.0, 2.0, 0.0}}, up, {rod}),
+      particles_with_materials({{0.0, 1.0, 0.0}, {0.0, 1.0 + kGap, 0.0}}, up),  // in contact
+  };
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    SimulatorSettings settings = settings_of();
+    settings.gravity = -gravity * Vector3::UnitY();
+    Simulator simulator(scenes[k], settings, {ground(kRough)});
+    run(simulator, 3.0);
+    EXPECT_NEAR(simulator.positions()(1, 0) - 1.0, gravity * (3.0 - 4.5), 1.0e-3 * gravity) << k;
+    settings.gravity.setZero();
+    SpringNetwork still = scenes[k];
+    still.velocities.setZero();
+    Simulator without_gravity(still, settings, {ground(kRough)});
+    run(without_gravity, 1.0);
+    EXPECT_TRUE(sleeps(without_gravity)) << k;
+  }
+}
+
+TEST(RestDetector, WhatHangsFromAPinOrAnObstacleOrLiesOnABodySleeps) {
+  const Obstacle ceiling{
+      .name = "ceiling", .geometry = HalfSpaceGeometry{.normal = -Vector3::UnitY(), .offset = -2.0}, .material = kRough};
+  SpringNetwork pinned = particles_with_materials({{0.0, 0.5, 0.0}, {0.0, 1.0, 0.0}}, Vector3::Zero(),
+                                                  {{.name = "rod", .particles = {0}, .second = ParticleEnds{.particles = {1}}}});
+  pinned.inverse_masses[1] = 0.0;
+  pinned.pins = {Pin{.particles = {1}, .motion = {}, .name = "nail"}};
+  const SpringNetwork attached = particles_with_materials(
+      {{0.0, 0.5, 0.0}}, Vector3::Zero(), {{.name = "rod", .particles = {0}, .second = ObstacleEnd{.obstacle = 1}}});
+  const SpringNetwork lying = particles_with_materials({{0.0, 2.0 * kGap, 0.0}, {0.0, kGap, 0.0}}, Vector3::Zero());
+  for (const SpringNetwork& network : {pinned, attached, lying}) {
+    Simulator simulator(network, settings_of(), {ground(kRough), ceiling});
+    run(simulator, 1.0);
+    EXPECT_TRUE(sleeps(simulator, 0));
+  }
+}
+
 TEST(RestDetector, WhatAnAttachmentJoinsToABodyThatIsAwakeStaysAwake) {
   NetworkBuilder hanging_first;
   hanging_first.begin_body("hangs", kRough);
