@@ -33,10 +33,9 @@ struct LimitMemory {
   std::vector<StretchHandover> handovers{};  ///< one entry per body
 };
 
-/// The motion of a sleep group or a body, see RestDetector. Root mean squares over its particles.
+/// The motion of a sleep group or a body, see RestDetector.
 struct MotionHistory {
-  double in_frame = 0.0;       ///< the largest displacement in a frame of the present window [m]
-  double displacement = 0.0;   ///< the largest one from the begin of the present window [m]
+  double in_frame = 0.0;       ///< the largest visible displacement in a frame of the present window [m]
   bool was_invisible = false;  ///< whether its motion was invisible in the last window
   bool is_at_rest = false;     ///< whether it was at rest at the end of the last window
 };

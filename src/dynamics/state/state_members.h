@@ -57,7 +57,7 @@ void visit_members(S& c, const Visit& visit) {
 }
 template <Same<MotionHistory> S, class Visit>
 void visit_members(S& h, const Visit& visit) {
-  visit(h.in_frame, h.displacement, h.was_invisible, h.is_at_rest);
+  visit(h.in_frame, h.was_invisible, h.is_at_rest);
 }
 template <Same<RestMemory> S, class Visit>
 void visit_members(S& r, const Visit& visit) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace sprung {
@@ -19,11 +20,16 @@ constexpr double kWindow = 0.25;
 // change.
 constexpr double kRounding = 1.0e-9;  // [s]
 
-// Frames of 1/32 s, near the usual frame rate of 30 1/s.
+// Frames of 1/32 s on average, near the usual frame rate of 30 1/s.
 constexpr int kFrames = 8;
 
 // The largest invisible displacement [m]: a tenth of a pixel where 1000 pixels show a metre.
 constexpr double kInvisible = 1.0e-4;
+
+// The displacement of a single particle may be larger than the root mean square by this factor. A fold or a corner may then move by
+// 0.3 mm in a frame, and by 1 mm if the body as a whole is at rest: limp cloths have a few particles that hardly ever stop.
+constexpr double kOfOne = 3.0;
+constexpr double kOfOneInBody = 10.0;  // if the body as a whole is at rest
 
 // The bounds become smaller in bodies with springs below this length [m], which are shown larger.
 constexpr double kLongSpring = 0.01;
@@ -53,6 +59,30 @@ constexpr double kCreep = 3.0e-8;
 // The squared sine of the angle between the displacements of two windows, as vectors of all particles, below which they count as
 // parallel. An angle of 1e-3 is far above roundings: the smallest displacement that counts, 7.5 nm, has one of 3e-8 at 1 m.
 constexpr double kParallel = 1.0e-6;
+
+/// When a frame of a window ends [s]. Two frames are long and short, in the golden ratio: no vibration has a period that divides
+/// both, so that its displacements are seen in one of them.
+double end_of_frame(int frame) {
+  constexpr double kPair = 2.0 * kWindow / kFrames;
+  return kPair * (frame / 2 + (frame % 2 == 0 ? 1.0 / std::numbers::phi : 1.0));  // NOLINT(bugprone-integer-division)
+}
+
+/// The displacements of particles in a frame.
+struct Displacements {
+  double sum = 0.0;      ///< of squares [m^2]
+  double largest = 0.0;  ///< square [m^2]
+  std::size_t count = 0;
+
+  void add(double squared) {
+    sum += squared;
+    largest = std::max(largest, squared);
+    ++count;
+  }
+  /// The root mean square, or the largest displacement divided by `of_one` if that is more [m].
+  [[nodiscard]] double visible(double of_one) const {
+    return count == 0 ? 0.0 : std::max(std::sqrt(sum / static_cast<double>(count)), std::sqrt(largest) / of_one);
+  }
+};
 
 /// Sums of products of displacements, over particles [m^2]. 0 is the window that ends, 1 and 2 are those before it.
 struct Products {
@@ -184,28 +214,22 @@ bool RestDetector::window_ends(double time, const SimulationState& state) {
 
 void RestDetector::observe(double time, SimulationState& state) const {
   RestMemory& rest = state.rest;
-  if (!rest.window_begin || time - *rest.window_begin < kWindow / kFrames * (rest.frames + 1) - kRounding) return;
-  std::vector<double> in_frame(bodies_.size(), 0.0);  // squares
-  std::vector<double> in_window(bodies_.size(), 0.0);
-  const auto note = [](double in_frame_sum, double in_window_sum, std::size_t count, MotionHistory& history) {
-    if (count == 0) return;
-    history.in_frame = std::max(history.in_frame, std::sqrt(in_frame_sum / static_cast<double>(count)));
-    history.displacement = std::max(history.displacement, std::sqrt(in_window_sum / static_cast<double>(count)));
+  if (!rest.window_begin || time - *rest.window_begin < end_of_frame(rest.frames) - kRounding) return;
+  std::vector<Displacements> of_bodies(bodies_.size());
+  const auto note = [](const Displacements& found, double of_one, MotionHistory& history) {
+    history.in_frame = std::max(history.in_frame, found.visible(of_one));
   };
   for (std::size_t p = 0; p < groups_.size(); ++p) {
-    double frame_sum = 0.0;
-    double window_sum = 0.0;
+    Displacements& of_body = of_bodies[groups_[p].body];
+    Displacements of_group;
     for (const Index i : groups_[p].free) {
-      frame_sum += (state.x.col(i) - rest.x_at_frame.col(i)).squaredNorm();
-      window_sum += (state.x.col(i) - rest.x_at_begins[0].col(i)).squaredNorm();
+      const double squared = (state.x.col(i) - rest.x_at_frame.col(i)).squaredNorm();
+      of_group.add(squared);
+      of_body.add(squared);
     }
-    in_frame[groups_[p].body] += frame_sum;
-    in_window[groups_[p].body] += window_sum;
-    note(frame_sum, window_sum, groups_[p].free.size(), rest.histories[p]);
+    note(of_group, kOfOne, rest.histories[p]);
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    note(in_frame[b], in_window[b], bodies_[b].free.size(), rest.histories[groups_.size() + b]);
-  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) note(of_bodies[b], kOfOneInBody, rest.histories[groups_.size() + b]);
   ++rest.frames;
   rest.x_at_frame = state.x;
 }
@@ -289,7 +313,7 @@ void RestDetector::judge_all(const std::vector<char>& restless, SimulationState&
 
 void RestDetector::judge(const Watched& group, bool is_restless, const SimulationState& state, MotionHistory& history) {
   const double bound = kInvisible * group.scale();
-  const bool invisible = !is_restless && (history.in_frame <= bound || history.displacement <= bound);
+  const bool invisible = !is_restless && history.in_frame <= bound;
   history = {.was_invisible = invisible,
              .is_at_rest = invisible && history.was_invisible && (group.free.empty() || !goes_on(group, state, bound))};
 }

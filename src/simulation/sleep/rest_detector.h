@@ -31,17 +31,16 @@ class RestDetector {
   /// Whether a window ends at `time` [s], or the first one begins.
   [[nodiscard]] static bool window_ends(double time, const SimulationState& state);
 
-  /// Call it after each step. At the end of each frame, an eighth of a window, updates the displacements in MotionHistory.
+  /// Call it after each step. At the end of each of the eight frames of a window, updates the displacement in MotionHistory.
   void observe(double time, SimulationState& state) const;
 
   /// Call it at the end of a window. Sets MotionHistory::is_at_rest and begins the next window. A group is at rest if its motion
   /// was invisible in the last two windows and does not go on. All groups of a body are at rest too if the body as a whole is: a
   /// few of its particles may then exceed the bounds. `beside` are the sleeping groups and their neighbours.
   ///
-  /// Motion is invisible if the group is not in `restless`, and the root mean square over its particles is at most
-  /// - 0.1 mm of the displacements in each frame of 1/32 s, whatever the frame rate of the output is, or
-  /// - 0.1 mm of the displacements from the begin of the window at the end of each frame.
-  /// Both bounds are smaller in bodies with springs shorter than 1 cm, in proportion.
+  /// Motion is invisible if the group is not in `restless` and, in each frame of 0.039 s and 0.024 s in turn, whatever the frame
+  /// rate of the output is, the root mean square of the displacements of its particles is at most 0.1 mm and none exceeds 0.3 mm,
+  /// or 1 mm in a body as a whole. Both bounds are smaller in bodies with springs shorter than 1 cm, in proportion.
   ///
   /// The motion goes on if the group moved faster than 30 nm/s, and one of five is true:
   /// - The prediction is a slide of more than a millimetre, from the begin of the last window to its stop, or one that never stops.

@@ -40,13 +40,33 @@ class Rest : public ::testing::Test {
 
   /// Lets all particles follow a path x(t) [m], t from 0 s on, for a window. Without `window` windows before, the first one begins.
   void follow(const std::function<double(double)>& path, int window) {
+    constexpr int kSteps = 16 * kFrames;
     if (window == 0) end_window();
-    for (int frame = 1; frame <= kFrames; ++frame) {
-      const double t = (window + static_cast<double>(frame) / kFrames) * kWindow;
+    for (int step = 1; step <= kSteps; ++step) {
+      const double t = (window + static_cast<double>(step) / kSteps) * kWindow;
       for (Index i = 0; i < network_.particle_count(); ++i) state_.x(0, i) = network_.positions(0, i) + path(t);
-      detector_.observe(time_ + frame * kWindow / kFrames, state_);
+      detector_.observe(time_ + step * kWindow / kSteps, state_);
     }
     end_window();
+  }
+
+  /// Whether a group is at rest whose particles, or a single one if not `all`, move by `distance` [m] back and forth in frames.
+  bool rests_with(double distance, bool all) {
+    state_ = initial_state(network_);
+    for (int window = 0; window < 4; ++window) {
+      end_window();
+      for (int frame = 1; frame <= kFrames; ++frame) {
+        const double displacement = frame % 2 == 0 ? distance : -distance;
+        if (all) {
+          move(0, displacement);
+        } else {
+          state_.x(0, groups_.groups[0].particles.front()) += displacement;
+        }
+        detector_.observe(time_ + frame * kWindow / kFrames, state_);
+      }
+    }
+    end_window();
+    return rests(0);
   }
 
   /// The time [s] at which the path is at rest for the first time; infinite: not in 20 s.
@@ -169,21 +189,25 @@ TEST_F(Rest, NeedsTwoWindowsAfterTheLastRestlessOne) {
 
 // One of seven groups swings out of sight of the others: 0.2 mm in a frame are 0.08 mm as root mean square of the body.
 TEST_F(Rest, OfABodyAsAWholeIsThatOfAllItsGroups) {
-  const auto rests_with = [&](double distance) {
-    state_ = initial_state(network_);
-    for (int window = 0; window < 4; ++window) {
-      end_window();
-      for (int frame = 1; frame <= kFrames; ++frame) {
-        move(0, frame % 2 == 0 ? distance : -distance);
-        detector_.observe(time_ + frame * kWindow / kFrames, state_);
-      }
-    }
-    end_window();
-    return rests(0);
-  };
-  EXPECT_TRUE(rests_with(0.2e-3));
-  EXPECT_FALSE(rests_with(0.5e-3));
+  EXPECT_TRUE(rests_with(0.2e-3, true));
+  EXPECT_FALSE(rests_with(0.5e-3, true));
   EXPECT_TRUE(rests(1));
+}
+
+// 1.1 mm are 0.055 mm as root mean square of 400 particles. The bound for one is 1 mm where the body as a whole is at rest.
+TEST_F(Rest, IsNoMotionThatOneParticleShows) {
+  EXPECT_TRUE(rests_with(0.25e-3, false));
+  EXPECT_FALSE(rests_with(1.1e-3, false));
+}
+
+// A frame of 1/32 s is a multiple of their periods.
+TEST_F(Rest, IsNoVibrationInStepWithFrames) {
+  for (const double frequency : {32.0, 64.0, 96.0}) {
+    for (const double phase : {0.0, 0.5, 1.0}) {
+      const auto path = [&](double t) { return 1.0e-3 * std::cos(2.0 * std::numbers::pi * frequency * t + phase); };
+      EXPECT_EQ(rests_at(path), std::numeric_limits<double>::infinity()) << frequency << " Hz";
+    }
+  }
 }
 
 TEST_F(Rest, BesideASleeperDisplacementsAddUp) {
