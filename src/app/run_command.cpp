@@ -131,7 +131,7 @@ RunOutput open_output(OutputFolder folder, const RunFacts& facts, const ResumePo
     loaded.simulator.restore(point.checkpoint->state);
     return output;
   }
-  if (!folder.is_empty()) folder.remove_run();
+  if (point.has_run) folder.remove_run();
   return {std::move(folder), facts, loaded.simulator};
 }
 

@@ -160,6 +160,7 @@ ResumePoint find_resume_point(const OutputFolder& folder, const RunFacts& facts,
   }
   const RunIdentity now = identity_of(facts.scene, simulator);
   ResumePoint point;
+  point.has_run = true;
   point.frames_written = run->frames_written;
   std::error_code ignored;
   if (std::filesystem::exists(folder.path() / kCheckpointFile, ignored)) {

@@ -35,7 +35,8 @@ struct RunCheckpoint {
 /// Where a run goes on.
 struct ResumePoint {
   bool is_complete = false;              ///< the run has all frames: nothing is left to do
-  int frames_written = 0;                ///< of the run
+  bool has_run = false;                  ///< whether the folder has a run
+  int frames_written = 0;                ///< of it
   std::optional<Checkpoint> checkpoint;  ///< none: from the beginning
 };
 

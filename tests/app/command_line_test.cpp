@@ -35,8 +35,8 @@ TEST_F(CommandLine, RunWritesTheFramesAndSaysSoOnStandardErrorOnly) {
   EXPECT_EQ(ending.out, "");
   EXPECT_THAT(ending.err, HasSubstr("7 frames"));
   EXPECT_THAT(ending.err, HasSubstr("frame 7/7"));
-  EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "record.bin", "rope/", "rope/rope.0001.obj", "rope/rope.0002.obj",
-                                          "rope/rope.0003.obj", "rope/rope.0004.obj", "rope/rope.0005.obj", "rope/rope.0006.obj",
+  EXPECT_THAT(listing(out()), ElementsAre("checkpoint.bin", "diagnostics.csv", "record.bin", "rope/", "rope/rope.0001.obj",
+                                          "rope/rope.0002.obj", "rope/rope.0003.obj", "rope/rope.0004.obj", "rope/rope.0005.obj", "rope/rope.0006.obj",
                                           "rope/rope.0007.obj", "run.json"));
   EXPECT_EQ(summary()["outcome"], "done");
   EXPECT_EQ(summary()["frames_written"], 7);
@@ -45,7 +45,7 @@ TEST_F(CommandLine, RunWritesTheFramesAndSaysSoOnStandardErrorOnly) {
 
 TEST_F(CommandLine, RunWithFormatNoneWritesNoObjFiles) {
   EXPECT_EQ(run({"run", save(rope_scene()), "--out", out(), "--format", "none"}).code, 0);
-  EXPECT_THAT(listing(out()), ElementsAre("diagnostics.csv", "record.bin", "run.json"));
+  EXPECT_THAT(listing(out()), ElementsAre("checkpoint.bin", "diagnostics.csv", "record.bin", "run.json"));
   EXPECT_THAT(summary()["files"].get<std::vector<std::string>>(), ::testing::Contains("record.bin"));
   const Ending unknown = run({"run", save(rope_scene()), "--out", out(), "--overwrite", "--format", "fbx"});
   EXPECT_EQ(unknown.code, 2);

@@ -205,7 +205,7 @@ TEST_F(CommandLine, FolderThatIsNotEmptyIsOverwrittenOnlyWhenAsked) {
 
   EXPECT_EQ(run({"run", scene, "--out", out(), "--overwrite", "--frames", "1"}).code, 0);
   EXPECT_THAT(listing(out()),
-              ElementsAre("diagnostics.csv", "record.bin", "rope/", "rope/notes.txt", "rope/rope.0001.obj", "run.json"));
+              ElementsAre("checkpoint.bin", "diagnostics.csv", "record.bin", "rope/", "rope/notes.txt", "rope/rope.0001.obj", "run.json"));
 }
 
 TEST_F(CommandLine, InvalidSceneDoesNotOverwrite) {
@@ -258,7 +258,7 @@ TEST_F(CommandLine, KilledRunCanBeOverwritten) {
   EXPECT_EQ(summary()["outcome"], "running");
   EXPECT_EQ(run({"run", scene, "--out", out(), "--overwrite"}).code, 0);
   EXPECT_EQ(listing(scratch_ / "out/rope").size(), 7U);
-  EXPECT_EQ(listing(out()).size(), 7U + 4U);
+  EXPECT_EQ(listing(out()).size(), 7U + 5U);
 }
 
 }  // namespace

@@ -3,32 +3,25 @@
 
 #include "simulation/simulator.h"
 
-#include <memory>
-
 namespace sprung::testing {
 
-/// Chooses a step of a run at random, clears its caches there, as each run does at some frames, resumes a copy of it from the bytes
-/// of its state, and compares the positions and velocities of both in the frames that follow.
+/// Chooses a step of a run at random. There a copy makes a frame, clears its caches, as each run does at some frames, and is resumed
+/// from the bytes of its state. The states of both in the frames that follow must be the same. The run itself goes on as without
+/// this check.
 class ResumeCheck {
  public:
   /// The run has so many frames.
   explicit ResumeCheck(int frames);
 
-  /// Call it before each frame after the first. In the chosen frame it makes the steps up to the chosen one, adds their report, and
-  /// resumes the copy. Throws StepError.
+  /// Call it before each frame after the first. In the chosen frame it makes the steps up to the chosen one, and adds their report.
+  /// Throws StepError.
   void begin(int frame, Simulator& simulator, StepReport& report);
 
-  /// Call it after each frame, whose number counts from 1.
-  void look(int frame, const Simulator& simulator);
-
-  /// Call it at the end of a run that did not diverge.
-  void judge() const;
-
  private:
+  void compare(const Simulator& simulator);
+
   int begin_;        ///< frame in which the copy is made
   double fraction_;  ///< of the frame's steps that it makes before
-  std::unique_ptr<Simulator> resumed_;
-  int first_different_ = 0;  ///< frame; 0: none
 };
 
 }  // namespace sprung::testing

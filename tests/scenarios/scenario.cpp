@@ -161,7 +161,6 @@ ScenarioReport run_until_divergence(BuiltScene scene, const Watch& watch, Judge 
     }
     report.frames = number;
     record.add(simulator.positions());
-    resume.look(number, simulator);
     report.max_stretch = std::max(report.max_stretch, frame.max_stretch);
     frame.truncated += before.truncated;
     frame.infeasible += before.infeasible;
@@ -173,7 +172,6 @@ ScenarioReport run_until_divergence(BuiltScene scene, const Watch& watch, Judge 
     frame_judge.look(number, report);
     if (watch) watch(simulator, frame);
   }
-  resume.judge();
   for (const Body& body : simulator.network().bodies) {
     if (!body.preserve_volume) continue;
     report.inverted += count_inverted(body.cells, simulator.positions().middleCols(body.first_particle, body.particle_count));
