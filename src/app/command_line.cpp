@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <thread>
 
 namespace sprung {
@@ -97,7 +98,7 @@ class Parser {
     run->add_flag("--resume", run_.resume, "Go on with the run in the folder from its last checkpoint, or begin it")
         ->excludes(overwrite);
     run->add_option("--checkpoint", run_.checkpoint, "Seconds between two checkpoints, 60 by default; 0: none")
-        ->check(CLI::Range(0.0, kMostSeconds))
+        ->check(is_interval)
         ->type_name("SECONDS");
   }
 
@@ -166,6 +167,13 @@ class Parser {
   }
 
   static std::vector<std::string> export_formats() { return {"html"}; }
+
+  static std::string is_interval(const std::string& text) {
+    char* end = nullptr;
+    const double seconds = std::strtod(text.c_str(), &end);
+    const bool good = !text.empty() && *end == '\0' && seconds >= 0.0 && seconds <= kMostSeconds;
+    return good ? "" : "must be a number of seconds from 0 to 1e9";
+  }
 
   static std::string is_token(const std::string& token) {
     const bool good = !token.empty() && std::ranges::all_of(token, [](unsigned char letter) {

@@ -14,6 +14,7 @@
 
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -144,6 +145,10 @@ ExitCode run(const RunOptions& options) {
   loaded.frames = options.frames.value_or(loaded.frames);
   if (options.format == "none" && !loaded.scene.write_record) {
     throw UsageError("--format none with \"record\": false writes no frames; leave out one of them");
+  }
+  std::error_code ignored;
+  if (!loaded.initial_state.empty() && std::filesystem::equivalent(loaded.initial_state, options.out, ignored)) {
+    throw FileError("write into the folder", options.out, "the scene begins from the run in it; choose another folder");
   }
   if (interrupted()) return ExitCode::interrupted;
 

@@ -47,8 +47,10 @@ std::string sealed(const Seal& seal, std::string_view content) {
 }
 
 std::string read_sealed(const std::filesystem::path& file, const Seal& seal) {
+  const auto fail = [&](const std::string& reason) {
+    throw FileError("read", file.string(), reason + (seal.remedy.empty() ? "" : "; ") + std::string(seal.remedy));
+  };
   const std::string all = read_all(file);
-  const auto fail = [&](const std::string& reason) { throw FileError("read", file.string(), reason); };
   if (!all.starts_with(seal.kind)) fail("it is not " + std::string(seal.what));
   std::string_view rest = std::string_view(all).substr(seal.kind.size());
   try {
@@ -64,8 +66,9 @@ std::string read_sealed(const std::filesystem::path& file, const Seal& seal) {
     if (!is_good) fail("it is damaged");
     return std::string(rest.substr(0, size));
   } catch (const BytesError&) {
-    throw FileError("read", file.string(), "it is truncated");
+    fail("it is truncated");
   }
+  return "";
 }
 
 }  // namespace sprung

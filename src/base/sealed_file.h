@@ -9,9 +9,10 @@ namespace sprung {
 
 /// The first bytes of a sealed file: its kind, and the program that wrote it.
 struct Seal {
-  std::string_view kind;     ///< 8 letters
-  std::string_view what;     ///< in messages: `a checkpoint of sprung`
-  std::string_view version;  ///< of the layout of the bytes and of the program; others are refused
+  std::string_view kind;      ///< 8 letters
+  std::string_view what;      ///< in messages: `a checkpoint of sprung`
+  std::string_view version;   ///< of the layout of the bytes and of the program; others are refused
+  std::string_view remedy{};  ///< in messages, if the file cannot be used
 };
 
 /// The bytes of a file with this seal: kind, version, size of the content, content, and the FNV-1a fingerprint of all before it.

@@ -37,7 +37,7 @@ void visit_members(S& i, const Visit& visit) {
 }
 template <Same<RunCheckpoint> S, class Visit>
 void visit_members(S& c, const Visit& visit) {
-  visit(c.identity, c.progress, c.monitor, c.record_size, c.diagnostics_size, c.forces_size);
+  visit(c.identity, c.files, c.progress, c.monitor, c.record_size, c.diagnostics_size, c.forces_size);
 }
 
 namespace {
@@ -119,7 +119,7 @@ std::vector<std::string> differences(const RunIdentity& before, const RunIdentit
   for (const auto& [name, fingerprint] : before.fingerprints) {
     const auto present = now.fingerprints.find(name);
     if (present != now.fingerprints.end() && present->second != fingerprint)
-      add("the mesh or the start of " + name + " is another one", all);
+      add("the mesh, or the state in \"initial_state\", of " + name + " is another one", all);
   }
   return all;
 }
@@ -154,25 +154,32 @@ RunIdentity identity_of(const std::string& scene, const Simulator& simulator) {
 
 ResumePoint find_resume_point(const OutputFolder& folder, const RunFacts& facts, const Simulator& simulator) {
   if (folder.is_empty()) return {};
-  const auto run = written_run(folder.path() / kRunSummaryFile);
-  if (!run) {
+  std::error_code ignored;
+  const bool has_checkpoint = std::filesystem::exists(folder.path() / kCheckpointFile, ignored);
+  auto run = written_run(folder.path() / kRunSummaryFile);
+  if (!run && !has_checkpoint) {
     throw FileError("resume the run", folder.path().string(), "it has files but no run of sprung; choose another folder");
   }
+  if (!run) run = WrittenRun{};  // the checkpoint has all that is needed
   const RunIdentity now = identity_of(facts.scene, simulator);
   ResumePoint point;
   point.has_run = true;
   point.frames_written = run->frames_written;
-  std::error_code ignored;
-  if (std::filesystem::exists(folder.path() / kCheckpointFile, ignored)) {
-    point.checkpoint = read_checkpoint(folder.path() / kCheckpointFile);
+  if (has_checkpoint) {
+    point.checkpoint = read_checkpoint(folder.path() / kCheckpointFile, "run the scene again with --overwrite");
     expect_same(folder, run_checkpoint(*point.checkpoint, folder).identity, now);
   } else if (!run->scene.empty()) {
     RunIdentity before{.keys = {}, .fingerprints = now.fingerprints};
     add_keys(Json::parse(run->scene), "", before.keys);
     expect_same(folder, before, now);
   }
-  // A run that was killed after its last frame has no outcome yet.
-  point.is_complete = run->frames_written > facts.frames || (run->frames_written == facts.frames && run->outcome == "done");
+  // A run that was killed after its last frame has no outcome yet. One that was killed while it was removed has lost this file.
+  const bool is_whole = std::filesystem::exists(folder.path() / kDiagnosticsFile, ignored);
+  point.is_complete =
+      is_whole && (run->frames_written > facts.frames || (run->frames_written == facts.frames && run->outcome == "done"));
+  if (!point.is_complete && !has_checkpoint && run->frames_written > 0 && run->outcome != "running") {
+    fail(folder, "its " + std::to_string(run->frames_written) + " frames have no " + kCheckpointFile + " to go on from");
+  }
   return point;
 }
 

@@ -22,6 +22,7 @@ struct RunIdentity {
 
 struct RunCheckpoint {
   RunIdentity identity;
+  std::vector<std::string> files;  ///< patterns
   RunProgress progress;
   std::string monitor;                 ///< what the caller of RunOutput remembers of the frames so far
   std::uint64_t record_size = 0;       ///< of record.bin [bytes]
@@ -40,8 +41,8 @@ struct ResumePoint {
   std::optional<Checkpoint> checkpoint;  ///< none: from the beginning
 };
 
-/// Throws FileError if the folder has files but no run, if it has the run of another scene, whose differences are named, or if its
-/// checkpoint cannot be used.
+/// Throws FileError if the folder has files but no run, if it has the run of another scene, whose differences are named, if its
+/// checkpoint cannot be used, or if a run that ended has none: nothing is removed that was meant to stay.
 [[nodiscard]] ResumePoint find_resume_point(const OutputFolder& folder, const RunFacts& facts, const Simulator& simulator);
 
 /// Throws FileError if the checkpoint is not that of a run.

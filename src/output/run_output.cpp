@@ -22,7 +22,6 @@
 namespace sprung {
 namespace {
 
-constexpr const char* kDiagnosticsFile = "diagnostics.csv";
 constexpr const char* kForcesFile = "forces.csv";
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -120,9 +119,10 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
       kept_is_written_(true) {
   RunCheckpoint run = run_checkpoint(from, folder_);
   const auto fail = [&](const std::string& reason) { throw FileError("resume the run", folder_.path().string(), reason); };
-  if (files_of_run(folder_.path() / kRunSummaryFile) != patterns()) {
+  if (run.files != patterns()) {
     fail(
-        "its files would get other names; give the --format with which it began, and as few frames as its numbers have digits for");
+        "its files would get other names; give the --format with which it began, and no more frames than the digits of their names "
+        "count");
   }
   for (const auto& [file, size] : {std::pair(kRecordFile, run.record_size), std::pair(kDiagnosticsFile, run.diagnostics_size),
                                    std::pair(kForcesFile, run.forces_size)}) {
@@ -218,6 +218,7 @@ std::string RunOutput::note_checkpoint(const Simulator& simulator, const std::st
   if (is_resumable(simulator.state())) {
     RunCheckpoint run;
     run.identity = identity_;
+    run.files = patterns();
     run.progress = progress_;
     run.monitor = monitor;
     if (recorder_) run.record_size = folder_.size(kRecordFile);

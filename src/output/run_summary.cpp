@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
 
 namespace sprung {
 namespace {
@@ -111,6 +113,8 @@ std::string RunSummary::text(const RunProgress& progress) const {
 }
 
 std::optional<WrittenRun> written_run(const std::filesystem::path& run_summary) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(run_summary, ignored)) return std::nullopt;
   std::ifstream stream(run_summary);
   const Json json = Json::parse(stream, nullptr, false);
   if (!is_run_summary(json)) return std::nullopt;
@@ -124,10 +128,8 @@ std::optional<WrittenRun> written_run(const std::filesystem::path& run_summary) 
 }
 
 std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_summary) {
-  std::ifstream stream(run_summary);
-  const Json json = Json::parse(stream, nullptr, false);
-  if (!is_run_summary(json)) return std::nullopt;
-  return json["files"].get<std::vector<std::string>>();
+  auto run = written_run(run_summary);
+  return run ? std::optional(std::move(run->files)) : std::nullopt;
 }
 
 }  // namespace sprung

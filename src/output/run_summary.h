@@ -15,6 +15,7 @@
 
 namespace sprung {
 
+inline constexpr const char* kDiagnosticsFile = "diagnostics.csv";
 inline constexpr const char* kCheckpointFile = "checkpoint.bin";
 
 inline constexpr const char* kRunSummaryFile = "run.json";

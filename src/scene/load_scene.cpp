@@ -69,6 +69,7 @@ LoadedScene start_scene(PreparedScene prepared) {
                        .frames = built.frames,
                        .largest_stable_step = built.largest_stable_step,
                        .meshes = std::move(built.meshes),
+                       .initial_state = std::move(built.initial_state),
                        .sources = std::move(built.sources),
                        .adjustments = std::move(built.adjustments),
                        .warnings = {}};

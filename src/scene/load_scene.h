@@ -4,6 +4,7 @@
 #include "scene/building/scene_builder.h"
 #include "simulation/simulator.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ struct LoadedScene {
   int frames = 1;
   double largest_stable_step = 0.0;  ///< [s]; infinity without a bound
   std::vector<NamedReport> meshes;
+  std::filesystem::path initial_state;      ///< folder or file that the scene begins from; empty: none
   ObjSources sources;                       ///< the files of bodies
   std::vector<StepAdjustment> adjustments;  ///< of bodies that were adjusted for larger steps
   std::vector<std::string> warnings;        ///< without duplicates

@@ -24,16 +24,29 @@ std::string text_of(const NamedCount& body) {
 
 template <Same<NamedCount> S, class Visit>
 void visit_members(S& n, const Visit& visit) {
-  visit(n.name, n.particles, n.springs);
+  visit(n.name, n.particles, n.springs, n.spring_ends);
 }
 template <Same<Checkpoint> S, class Visit>
 void visit_members(S& c, const Visit& visit) {
   visit(c.bodies, c.obstacles, c.state, c.last, c.run);
 }
 
+std::uint64_t fingerprint_of_springs(const std::vector<Index>& ends) {
+  Fingerprint fingerprint;
+  fingerprint.add(to_bytes(ends));
+  return fingerprint.value();
+}
+
 std::vector<NamedCount> bodies_of(const SpringNetwork& network) {
   std::vector<NamedCount> bodies;
-  for (const Body& body : network.bodies) bodies.push_back({body.name, body.particle_count, body.spring_count});
+  for (const Body& body : network.bodies) {
+    std::vector<Index> ends;
+    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+      ends.push_back(network.springs.first[s] - body.first_particle);
+      ends.push_back(network.springs.second[s] - body.first_particle);
+    }
+    bodies.push_back({body.name, body.particle_count, body.spring_count, fingerprint_of_springs(ends)});
+  }
   return bodies;
 }
 
@@ -49,8 +62,10 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   write_file(file, sealed(kSeal, to_bytes(checkpoint)), Durability::now);
 }
 
-Checkpoint read_checkpoint(const std::filesystem::path& file) {
-  const std::string bytes = read_sealed(file, kSeal);
+Checkpoint read_checkpoint(const std::filesystem::path& file, std::string_view remedy) {
+  Seal seal = kSeal;
+  seal.remedy = remedy;
+  const std::string bytes = read_sealed(file, seal);
   Checkpoint checkpoint;
   try {
     from_bytes(bytes, checkpoint);
@@ -68,6 +83,8 @@ std::vector<std::string> differences(const std::vector<NamedCount>& bodies, cons
       texts.push_back("body \"" + body.name + "\" is missing");
     } else if (other->particles != body.particles || other->springs != body.springs) {
       texts.push_back("body \"" + body.name + "\" has " + text_of(*other) + ", not " + text_of(body));
+    } else if (other->spring_ends != body.spring_ends && other->spring_ends != 0 && body.spring_ends != 0) {
+      texts.push_back("body \"" + body.name + "\" has springs between other particles");
     }
   }
   for (const NamedCount& other : others) {

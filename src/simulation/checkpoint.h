@@ -3,9 +3,11 @@
 
 #include "dynamics/state/simulation_state.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sprung {
@@ -13,11 +15,12 @@ namespace sprung {
 class Simulator;
 struct Problem;
 
-/// The name of a body, a pin or an obstacle, and the number of its particles; 0 of an obstacle.
+/// The name of a body or an obstacle, and of a body what must be the same in a simulation that gets its state.
 struct NamedCount {
   std::string name;
   Index particles = 0;
-  Index springs = 0;  ///< of a body, also those that broke
+  Index springs = 0;              ///< also those that broke
+  std::uint64_t spring_ends = 0;  ///< fingerprint of the particles at their ends, counted in the body; 0: not known
 };
 
 struct Checkpoint {
@@ -37,11 +40,14 @@ struct Checkpoint {
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
 
 /// Throws FileError that tells in one line whether the file cannot be read, is no checkpoint, is truncated or damaged, or was
-/// written by another version. Such a state may still not fit a simulator: Simulator::restore() checks it.
-[[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file);
+/// written by another version, with the remedy. Such a state may still not fit a simulator: Simulator::restore() checks it.
+[[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file, std::string_view remedy = {});
 
-/// Each difference between the bodies of a checkpoint and those of a network, by name: bodies that one of them lacks, and other
-/// numbers of particles or springs. Empty if there is none.
+/// The fingerprint of the springs of a body; `ends` are particles, counted in the body.
+[[nodiscard]] std::uint64_t fingerprint_of_springs(const std::vector<Index>& ends);
+
+/// Each difference between two lists of bodies, by name: bodies that one of them lacks, other numbers of particles or springs, and
+/// springs between other particles. Empty if there is none.
 [[nodiscard]] std::vector<std::string> differences(const std::vector<NamedCount>& bodies, const std::vector<NamedCount>& others);
 
 /// The bodies of a network.

@@ -36,8 +36,8 @@ TEST_F(CommandLine, RunWritesTheFramesAndSaysSoOnStandardErrorOnly) {
   EXPECT_THAT(ending.err, HasSubstr("7 frames"));
   EXPECT_THAT(ending.err, HasSubstr("frame 7/7"));
   EXPECT_THAT(listing(out()), ElementsAre("checkpoint.bin", "diagnostics.csv", "record.bin", "rope/", "rope/rope.0001.obj",
-                                          "rope/rope.0002.obj", "rope/rope.0003.obj", "rope/rope.0004.obj", "rope/rope.0005.obj", "rope/rope.0006.obj",
-                                          "rope/rope.0007.obj", "run.json"));
+                                          "rope/rope.0002.obj", "rope/rope.0003.obj", "rope/rope.0004.obj", "rope/rope.0005.obj",
+                                          "rope/rope.0006.obj", "rope/rope.0007.obj", "run.json"));
   EXPECT_EQ(summary()["outcome"], "done");
   EXPECT_EQ(summary()["frames_written"], 7);
   EXPECT_EQ(summary()["scene"]["bodies"]["rope"]["mass"], 0.1);

@@ -204,8 +204,8 @@ TEST_F(CommandLine, FolderThatIsNotEmptyIsOverwrittenOnlyWhenAsked) {
   EXPECT_EQ(listing(out()), before);
 
   EXPECT_EQ(run({"run", scene, "--out", out(), "--overwrite", "--frames", "1"}).code, 0);
-  EXPECT_THAT(listing(out()),
-              ElementsAre("checkpoint.bin", "diagnostics.csv", "record.bin", "rope/", "rope/notes.txt", "rope/rope.0001.obj", "run.json"));
+  EXPECT_THAT(listing(out()), ElementsAre("checkpoint.bin", "diagnostics.csv", "record.bin", "rope/", "rope/notes.txt",
+                                          "rope/rope.0001.obj", "run.json"));
 }
 
 TEST_F(CommandLine, InvalidSceneDoesNotOverwrite) {

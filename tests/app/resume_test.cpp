@@ -24,6 +24,7 @@ using ::testing::HasSubstr;
 json scene_of_all() {
   return json::parse(R"({
     "duration": 1.2,
+    "frame_rate": 25,
     "step": 0.0001,
     "air": { "gusts": { "speed": 2.0, "length": 0.5 } },
     "output": { "forces": true },
@@ -57,6 +58,13 @@ json scene_of_all() {
       "ball": { "shape": { "type": "sphere", "radius": 0.2 }, "place": { "position": [0, 0.25, 0] }, "friction": 0.4 }
     }
   })");
+}
+
+/// A rope that swings for so long that no machine ends the run before it is interrupted.
+json long_rope_scene() {
+  json scene = rope_scene();
+  scene["duration"] = 10.0;
+  return scene;
 }
 
 /// A text without the column of wall times.
@@ -174,20 +182,20 @@ TEST_F(Resume, AnInterruptChangesNoBit) {
   EXPECT_EQ(summary()["outcome"], "interrupted");
   const Ending resumed = resume(scene);
   EXPECT_EQ(resumed.code, 0) << resumed.err;
-  EXPECT_THAT(resumed.err, ContainsRegex("goes on after frame [0-9]+ of 37"));
+  EXPECT_THAT(resumed.err, ContainsRegex("goes on after frame [0-9]+ of 31"));
   expect_same(folder(), undisturbed(scene));
 }
 
 // As a kill leaves them while the program appends.
 TEST_F(Resume, HalfLinesAndFilesOfLaterFramesAreCut) {
-  json scene = rope_scene();
+  json scene = long_rope_scene();
   scene["output"] = {{"forces", true}};
   const std::string file = save(scene);
   run_until(3, file);
   for (const char* name : {"diagnostics.csv", "forces.csv", "record.bin"}) {
     std::ofstream(folder() / name, std::ios::app | std::ios::binary) << "6,0.16";
   }
-  write_text(folder() / "rope/rope.0007.obj", "v 0 0 0\n");
+  write_text(folder() / "rope/rope.0302.obj", "v 0 0 0\n");
   write_text(folder() / "rope/.rope.0006.obj.tmp", "v 0");
   EXPECT_EQ(resume(file).code, 0);
   expect_same(folder(), undisturbed(file));
@@ -199,10 +207,50 @@ TEST_F(Resume, BeginsARunWithoutACheckpoint) {
   EXPECT_EQ(first.code, 0) << first.err;
   EXPECT_THAT(first.err, HasSubstr("there is no checkpoint"));
   EXPECT_FALSE(std::filesystem::exists(checkpoint()));
-  const Ending longer = resume(scene, {"--frames", "12"});
-  EXPECT_EQ(longer.code, 0) << longer.err;
-  EXPECT_THAT(longer.err, HasSubstr("there is no checkpoint"));
-  expect_same(folder(), undisturbed(scene, {"--frames", "12"}));
+}
+
+TEST_F(Resume, BeginsAKilledRunWithoutACheckpointAgain) {
+  const std::string scene = save(rope_scene());
+  {
+    Program program({"run", scene, "--out", out(), "--checkpoint", "0", "--frames", "100000", "--quiet"});
+    ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(folder() / "run.json") && summary()["frames_written"] > 9; }));
+    program.send(SIGKILL);
+    EXPECT_EQ(program.wait().signal, SIGKILL);
+  }
+  EXPECT_EQ(resume(scene, {"--frames", "12"}).code, 0);
+}
+
+// Its frames would be removed before they come again.
+TEST_F(Resume, ARunThatEndedWithoutACheckpointIsKept) {
+  const std::string scene = save(rope_scene());
+  ASSERT_EQ(resume(scene, {"--checkpoint", "0"}).code, 0);
+  const auto before = files_of(folder());
+  expect_refusal(resume(scene, {"--frames", "12"}), "its 7 frames have no checkpoint\\.bin to go on from.*--overwrite");
+  EXPECT_EQ(files_of(folder()), before);
+}
+
+TEST_F(Resume, NeedsNoRunSummary) {
+  const std::string scene = save(long_rope_scene());
+  run_until(3, scene);
+  write_text(folder() / "run.json", "");
+  EXPECT_EQ(resume(scene).code, 0);
+  expect_same(folder(), undisturbed(scene));
+}
+
+TEST_F(Resume, AFolderThatLostItsFilesIsNotComplete) {
+  const std::string scene = save(rope_scene());
+  ASSERT_EQ(resume(scene).code, 0);
+  std::filesystem::remove(folder() / "diagnostics.csv");
+  expect_refusal(resume(scene), "diagnostics\\.csv is shorter");
+}
+
+TEST_F(Resume, ASceneDoesNotBeginFromTheFolderThatItReplaces) {
+  json scene = rope_scene();
+  ASSERT_EQ(resume(save(scene)).code, 0);
+  scene["initial_state"] = out();
+  const auto before = files_of(folder());
+  expect_refusal(run({"run", save(scene), "--out", out(), "--overwrite"}), "the scene begins from the run in it");
+  EXPECT_EQ(files_of(folder()), before);
 }
 
 TEST_F(Resume, AFinishedRunGoesOnToALongerDuration) {
@@ -222,7 +270,7 @@ TEST_F(Resume, AFinishedRunGoesOnToALongerDuration) {
 }
 
 TEST_F(Resume, ARunOfAnotherSceneIsRefusedWithTheDifferences) {
-  json scene = rope_scene();
+  json scene = long_rope_scene();
   const std::string file = save(scene);
   run_until(2, file);
   const auto before = files_of(folder());
@@ -237,14 +285,14 @@ TEST_F(Resume, ARunOfAnotherSceneIsRefusedWithTheDifferences) {
 }
 
 TEST_F(Resume, AnotherMeshOfTheSameNameIsNoticedAndAnotherPlaceIsNot) {
-  json scene = rope_scene();
+  json scene = long_rope_scene();
   scene["obstacles"]["floor"] = {{"shape", {{"type", "mesh"}, {"file", "floor.obj"}}}};
   const std::string file = save(scene);
   const std::string floor = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 3 2\nf 1 4 3\n";
   write_text(scratch_ / "floor.obj", floor);
   run_until(2, file);
   write_text(scratch_ / "floor.obj", "v -2 0 -1\n" + floor.substr(floor.find('\n') + 1));
-  expect_refusal(resume(file), "the mesh or the start of obstacle \"floor\" is another one");
+  expect_refusal(resume(file), "the mesh, or the state in \"initial_state\", of obstacle \"floor\" is another one");
   std::filesystem::remove(scratch_ / "floor.obj");
   write_text(scratch_ / "meshes/plane.obj", floor);
   scene["obstacles"]["floor"]["shape"]["file"] = "meshes/plane.obj";
@@ -254,7 +302,7 @@ TEST_F(Resume, AnotherMeshOfTheSameNameIsNoticedAndAnotherPlaceIsNot) {
 }
 
 TEST_F(Resume, DamagedCheckpointsAreRefusedAndNothingIsLost) {
-  const std::string scene = save(rope_scene());
+  const std::string scene = save(long_rope_scene());
   run_until(3, scene);
   const std::string good = read_text(checkpoint());
   const auto before = files_of(folder());
@@ -275,7 +323,7 @@ TEST_F(Resume, DamagedCheckpointsAreRefusedAndNothingIsLost) {
 }
 
 TEST_F(Resume, OtherFormatsAreRefused) {
-  const std::string scene = save(rope_scene());
+  const std::string scene = save(long_rope_scene());
   run_until(3, scene);
   expect_refusal(resume(scene, {"--format", "none"}), "other names.*--format");
 }

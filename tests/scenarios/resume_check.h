@@ -5,9 +5,9 @@
 
 namespace sprung::testing {
 
-/// Chooses a step of a run at random. There a copy makes a frame, clears its caches, as each run does at some frames, and is resumed
-/// from the bytes of its state. The states of both in the frames that follow must be the same. The run itself goes on as without
-/// this check.
+/// Chooses a step of a run at random. There a copy makes a frame, clears its caches, as each run does at some frames, and is
+/// resumed from the bytes of its state. The states of both in the frames that follow must be the same. The run itself goes on as
+/// without this check.
 class ResumeCheck {
  public:
   /// The run has so many frames.

@@ -185,9 +185,9 @@ struct SimulationState {
   return static_cast<double>(whole_steps(state)) + static_cast<double>(state.substep) / state.substeps;
 }
 
-/// Caches of contact and limit are cleared at the end of the first frame that is so many steps after their last clearing. A run that
-/// resumes repeats up to so many steps. Clearing more often disturbs what lies still: contacts of nearly parallel features then
-/// touch at other points.
+/// Caches of contact and limit are cleared at the end of the first frame that is so many steps after their last clearing. A run
+/// that resumes repeats up to so many steps. Clearing more often disturbs what lies still: contacts of nearly parallel features
+/// then touch at other points.
 inline constexpr std::int64_t kStepsOfCaches = 4096;
 
 /// Whether a simulator that gets this state goes on as the one that has it, bit by bit: its caches were cleared at this step.

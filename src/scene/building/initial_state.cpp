@@ -51,22 +51,27 @@ FormerRun former_run(const RecordedRun& run) {
                    .slip = {}};
   const Edges& ends = run.model().springs.ends;
   for (const RecordedBody& body : run.model().bodies) {
-    NamedCount& counts = former.bodies.emplace_back(NamedCount{.name = body.name, .particles = body.particle_count});
+    std::vector<Index> its_ends;
     for (Eigen::Index s = 0; s < ends.cols(); ++s) {
-      const Index end = ends(0, s);
-      if (end >= body.first_particle && end < body.first_particle + body.particle_count) ++counts.springs;
+      const Index end = ends(0, s) - body.first_particle;
+      if (end < 0 || end >= body.particle_count) continue;
+      its_ends.push_back(end);
+      its_ends.push_back(ends(1, s) - body.first_particle);
     }
+    former.bodies.push_back({body.name, body.particle_count, static_cast<Index>(its_ends.size() / 2),
+                             its_ends.empty() ? 0 : fingerprint_of_springs(its_ends)});
   }
   return former;
 }
 
 /// The last of the checkpoint and the record of a run's folder. OBJ files alone know no springs.
 FormerRun read_former_run(const fs::path& folder, bool& knows_springs) {
+  constexpr const char* kRemedy = "run its scene again, or remove \"initial_state\"";
   knows_springs = true;
-  if (!fs::is_directory(folder)) return former_run(read_checkpoint(folder));
+  if (!fs::is_directory(folder)) return former_run(read_checkpoint(folder, kRemedy));
   const auto run = written_run(folder / kRunSummaryFile);
   if (fs::exists(folder / kCheckpointFile)) {
-    Checkpoint checkpoint = read_checkpoint(folder / kCheckpointFile);
+    Checkpoint checkpoint = read_checkpoint(folder / kCheckpointFile, kRemedy);
     const std::int64_t frames = 1 + (checkpoint.last ? *checkpoint.last : checkpoint.state).frame;
     if (!run || frames >= run->frames_written) return former_run(std::move(checkpoint));
   }
@@ -181,16 +186,35 @@ void check_broken(const Scene& scene, const BuiltScene& built, std::vector<Probl
   }
 }
 
+/// Springs that yielded keep their rest lengths only in a body whose springs may yield.
+void check_yielded(const Scene& scene, const FormerRun& former, const Mapping& mapping, const BuiltScene& built,
+                   std::vector<Problem>& problems) {
+  const std::vector<double> lengths = mapping.of_springs(former.rest_lengths);
+  const Springs& springs = built.network.springs;
+  for (const Body& body : built.network.bodies) {
+    std::size_t count = 0;
+    for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
+      const auto spring = static_cast<std::size_t>(s);
+      if (lengths[spring] != springs.rest_length[spring] && !springs.law(s).yields()) ++count;
+    }
+    if (count == 0) continue;
+    problems.push_back({scene.file.string(), "bodies." + body.name + ".springs", "",
+                        counted(count, "spring") + " had other rest lengths in \"initial_state\" and may not yield here",
+                        "give the body the shape and the \"yield\" that it had there"});
+  }
+}
+
 }  // namespace
 
 void begin_as_run_ended(const Scene& scene, BuiltScene& built, std::vector<Problem>& problems) {
   const auto folder = find(scene, problems);
   if (!folder) return;
+  built.initial_state = *folder;
   bool knows_springs = false;
   FormerRun former = read_former_run(*folder, knows_springs);
   std::vector<NamedCount> bodies = bodies_of(built.network);
   if (!knows_springs) {
-    for (NamedCount& body : bodies) body.springs = 0;
+    for (NamedCount& body : bodies) body = {.name = body.name, .particles = body.particles};
   }
   for (const std::string& difference : differences(bodies, former.bodies)) {
     problems.push_back({scene.file.string(), "initial_state", "\"" + scene.initial_state + "\"", "in this run " + difference,
@@ -206,8 +230,12 @@ void begin_as_run_ended(const Scene& scene, BuiltScene& built, std::vector<Probl
                              " has neither record.bin nor checkpoint.bin.");
   }
   const SpringState start = initial_springs(built.network.springs);
-  if (!former.rest_lengths.empty() && !start.rest_lengths.empty()) {
-    built.start.rest_lengths = mapping.of_springs(former.rest_lengths);
+  if (!former.rest_lengths.empty()) {
+    check_yielded(scene, former, mapping, built, problems);
+    if (!start.rest_lengths.empty()) built.start.rest_lengths = mapping.of_springs(former.rest_lengths);
+  } else if (!start.rest_lengths.empty()) {
+    built.warnings.push_back("\"initial_state\" begins with the rest lengths of the shape, as the last frame of " +
+                             folder->string() + " has no checkpoint. Resume that run to its end, if its springs yielded.");
   }
   if (std::ranges::count(former.broken, 1) > 0) {
     built.start.broken = mapping.of_springs(former.broken);

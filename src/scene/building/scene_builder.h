@@ -27,10 +27,11 @@ struct NamedReport {
 struct BuiltScene {
   SpringNetwork network;
   std::vector<Obstacle> obstacles;
-  StartState start;                  ///< empty unless the scene begins as another run ended
-  SimulatorSettings settings;        ///< with the chosen step
-  int frames = 1;                    ///< floor(duration * frame_rate + 1e-9) + 1
-  double largest_stable_step = 0.0;  ///< [s]; infinity if every step is stable
+  std::filesystem::path initial_state;  ///< folder or file of the start; empty: none
+  StartState start;                     ///< empty unless the scene begins as another run ended
+  SimulatorSettings settings;           ///< with the chosen step
+  int frames = 1;                       ///< floor(duration * frame_rate + 1e-9) + 1
+  double largest_stable_step = 0.0;     ///< [s]; infinity if every step is stable
   std::vector<NamedReport> meshes;
   ObjSources sources;                                ///< the files of bodies
   std::map<std::string, std::string> weld_remedies;  ///< for bodies of a mesh whose pieces touch, by their names

@@ -177,6 +177,18 @@ TEST_F(InitialState, BrokenSpringsNeedABodyThatMayBreak) {
               Contains(HasSubstr("that broke in \"initial_state\" may not break here; give the body the \"break\"")));
 }
 
+TEST_F(InitialState, YieldedSpringsNeedABodyThatMayYield) {
+  json scene = first_scene();
+  scene["bodies"]["strip"]["springs"]["structural"].erase("yield");
+  EXPECT_THAT(problems(scene), Contains(HasSubstr("may not yield here; give the body the shape and the \"yield\"")));
+}
+
+TEST_F(InitialState, ABodyOfTheSameSizeWithOtherSpringsIsAnother) {
+  json scene = first_scene();
+  scene["bodies"]["strip"]["shape"]["resolution"] = {4, 3};
+  EXPECT_THAT(problems(scene), Contains(HasSubstr("body \"strip\" has springs between other particles")));
+}
+
 TEST_F(InitialState, AnOverlapIsTreatedAsAtAnyStart) {
   json scene = first_scene();
   scene["obstacles"]["box"] = {{"shape", {{"type", "box"}, {"size", {0.1, 0.1, 0.1}}}},
@@ -192,6 +204,7 @@ TEST_F(InitialState, ComesFromTheRecordWithoutACheckpoint) {
   EXPECT_EQ(loaded.simulator.state().x, former_.x);
   EXPECT_EQ(loaded.simulator.state().springs.broken, former_.springs.broken);
   EXPECT_THAT(loaded.warnings, Not(Contains(HasSubstr("velocities of 0"))));
+  EXPECT_THAT(loaded.warnings, Contains(HasSubstr("begins with the rest lengths of the shape")));
 }
 
 TEST_F(InitialState, OfObjFilesAloneHasNoVelocities) {
