@@ -54,7 +54,7 @@ bool moves_anything(const Simulator& simulator) {
 
 }  // namespace
 
-template <Same<EnergyGainMemory::FrameEnergy> S, class Visit>
+template <Same<FrameEnergy> S, class Visit>
 void visit_members(S& e, const Visit& visit) {
   visit(e.frame, e.energy);
 }

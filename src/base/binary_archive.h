@@ -86,7 +86,7 @@ class BinaryWriter {
   }
   template <class Struct>
   requires(std::is_class_v<Struct> && !EigenArray<Struct>) void write(const Struct& value) {
-    visit_members(value, [this](const auto&... members) { (write(members), ...); });
+    visit_members(value, [this](const auto&... members) { (this->write(members), ...); });
   }
 
  private:
@@ -180,7 +180,7 @@ class BinaryReader {
   }
   template <class Struct>
   requires(std::is_class_v<Struct> && !EigenArray<Struct>) void read(Struct& value) {
-    visit_members(value, [this](auto&... members) { (read(members), ...); });
+    visit_members(value, [this](auto&... members) { (this->read(members), ...); });
   }
 
  private:

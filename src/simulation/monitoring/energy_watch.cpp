@@ -99,7 +99,7 @@ EnergyGain::EnergyGain(const SpringNetwork& network, const SimulatorSettings& se
 
 void EnergyGain::note_frame(int frame, const Energies& energies) {
   if (!undriven_ || frame == 1) return;
-  const EnergyGainMemory::FrameEnergy now{frame, energies.kinetic + energies.of_springs() + energies.gravity};
+  const FrameEnergy now{frame, energies.kinetic + energies.of_springs() + energies.gravity};
   memory.max_kinetic = std::max(memory.max_kinetic, energies.kinetic);
   if (!memory.lowest || now.energy < memory.lowest->energy) memory.lowest = now;
   if (now.energy - memory.lowest->energy <= memory.rise_end.energy - memory.rise_begin.energy) return;

@@ -65,12 +65,13 @@ class EnergyWatch {
   double capacity_;     ///< of forces and limits [J]
 };
 
+struct FrameEnergy {
+  int frame = 0;
+  double energy = 0.0;  ///< [J]
+};
+
 /// What EnergyGain remembers of the frames so far.
 struct EnergyGainMemory {
-  struct FrameEnergy {
-    int frame = 0;
-    double energy = 0.0;  ///< [J]
-  };
   double max_kinetic = 0.0;           ///< of frames [J]
   std::optional<FrameEnergy> lowest;  ///< frame of the smallest total energy
   FrameEnergy rise_begin;             ///< of the largest rise
