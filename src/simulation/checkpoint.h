@@ -35,7 +35,7 @@ struct Checkpoint {
 /// With the present state.
 [[nodiscard]] Checkpoint checkpoint_of(const Simulator& simulator);
 
-/// Writes a file that is on the disk when this returns. Throws FileError; a former file then stays. Takes about 3 ms per megabyte,
+/// Writes a file that is on the disk when this returns. Throws FileError; a former file then stays. Takes about 5 ms per megabyte,
 /// and the time of the disk.
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
 

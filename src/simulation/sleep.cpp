@@ -81,7 +81,8 @@ void Stepper::wake_driven() {
 }
 
 /// A group at rest falls asleep if its neighbours are at rest too, if its body settles, and if something holds it: see
-/// settling_bodies() and held_groups(). What holds a group or sleeps holds its neighbours too.
+/// settling_bodies() and held_groups(). A group is held too if it is connected through
+/// neighbours to a held group or to a sleeper.
 void Stepper::add_sleepers(const Surroundings::Found& found, const std::vector<char>& disturbed) {
   std::vector<char> awake;
   for (Index p = 0; p < groups().count(); ++p)

@@ -245,7 +245,7 @@ TEST_P(Interrupted, RunDoesNotWaitForItsFrame) {
   EXPECT_EQ(listing(scratch_ / "out/rope").size(), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, ::testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, ::testing::Values(SIGINT, SIGTERM, SIGHUP));
 
 TEST_F(CommandLine, KilledRunCanBeOverwritten) {
   const std::string scene = save(rope_scene());
