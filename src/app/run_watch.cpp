@@ -1,7 +1,7 @@
 #include "app/run_watch.h"
 
 #include "app/console.h"
-#include "base/binary_archive.h"
+#include "base/files/binary_archive.h"
 #include "base/format.h"
 #include "base/grouped_warnings.h"
 #include "dynamics/stretch_limit/stretch_limit.h"
@@ -88,29 +88,24 @@ void RunWatch::note_frame(const FrameDiagnostics& frame) {
   note_handovers();
   note_broken(frame);
   note_truncated(frame);
-  energy_.note_frame(frame.frame, {.kinetic = frame.kinetic_energy,
-                                   .elastic = frame.elastic_energy,
-                                   .gravity = frame.gravity_energy,
-                                   .contact = frame.contact_energy});
+  energy_.note_frame(frame.frame,
+                     {.kinetic = frame.kinetic_energy,
+                      .elastic = frame.elastic_energy,
+                      .gravity = frame.gravity_energy,
+                      .contact = frame.contact_energy},
+                     memory_.energy);
 }
 
 void RunWatch::finish() {
   warn_of_thin_bodies();
-  if (const auto gain = energy_.gain(simulator_.positions())) warn(*gain);
+  if (const auto gain = energy_.gain(simulator_.positions(), memory_.energy)) warn(*gain);
   warn_of_missed_limit();
   warn_of_self_crossings();
 }
 
-std::string RunWatch::memory() const {
-  RunWatchMemory memory = memory_;
-  memory.energy = energy_.memory;
-  return to_bytes(memory);
-}
+std::string RunWatch::memory() const { return to_bytes(memory_); }
 
-void RunWatch::restore(const std::string& memory) {
-  from_bytes(memory, memory_);
-  energy_.memory = memory_.energy;
-}
+void RunWatch::restore(const std::string& memory) { from_bytes(memory, memory_); }
 
 void RunWatch::warn(const std::string& warning) {
   output_.add_warning(warning);

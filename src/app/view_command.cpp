@@ -3,7 +3,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "base/error.h"
-#include "base/file_writer.h"
+#include "base/files/file_writer.h"
 #include "base/format.h"
 #include "base/parallel.h"
 #include "output/file_pattern.h"

@@ -1,6 +1,6 @@
 #include "base/finite.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 
 namespace sprung {
 

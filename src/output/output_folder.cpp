@@ -1,7 +1,7 @@
 #include "output/output_folder.h"
 
 #include "base/error.h"
-#include "base/file_writer.h"
+#include "base/files/file_writer.h"
 #include "output/file_pattern.h"
 #include "output/run_summary.h"
 
@@ -112,6 +112,13 @@ std::uintmax_t OutputFolder::append(const fs::path& file, const std::string& tex
 void OutputFolder::shorten(const fs::path& file, std::uintmax_t size) const noexcept {
   std::error_code ignored;
   fs::resize_file(folder_ / file, size, ignored);
+}
+
+void OutputFolder::cut(const fs::path& file, std::uintmax_t size) const {
+  if (this->size(file) <= size) return;
+  std::error_code error;
+  fs::resize_file(folder_ / file, size, error);
+  if (error) throw FileError("shorten", (folder_ / file).string(), error.message());
 }
 
 std::uintmax_t OutputFolder::size(const fs::path& file) const noexcept {

@@ -44,6 +44,9 @@ class OutputFolder {
   /// Takes an append back: shortens a file to a size, if possible.
   void shorten(const std::filesystem::path& file, std::uintmax_t size) const noexcept;
 
+  /// Shortens a file that is longer. Throws FileError if it cannot be shortened.
+  void cut(const std::filesystem::path& file, std::uintmax_t size) const;
+
   /// The size of a file [bytes]; 0 if there is none.
   [[nodiscard]] std::uintmax_t size(const std::filesystem::path& file) const noexcept;
 

@@ -1,6 +1,7 @@
 #include "output/run_checkpoint.h"
 
 #include "base/error.h"
+#include "base/files/fingerprint.h"
 #include "collision/shapes/obstacle.h"
 #include "simulation/model.h"
 #include "simulation/simulator.h"
@@ -67,7 +68,7 @@ void add_keys(const Json& json, const std::string& path, std::map<std::string, s
 }
 
 template <class... Values>
-std::uint64_t fingerprint_of(const Values&... values) {
+std::uint64_t fingerprint_of_all(const Values&... values) {
   Fingerprint fingerprint;
   (fingerprint.add(to_bytes(values)), ...);
   return fingerprint.value();
@@ -80,20 +81,20 @@ std::uint64_t fingerprint_of_body(const Model& model, const Body& body) {
   const auto of_body = [&](const auto& list) {
     return std::vector(list.begin() + body.first_spring, list.begin() + body.first_spring + body.spring_count);
   };
-  return fingerprint_of(Points(network.positions.middleCols(body.first_particle, body.particle_count)),
-                        Points(start.x.middleCols(body.first_particle, body.particle_count)),
-                        Points(start.v.middleCols(body.first_particle, body.particle_count)),
-                        Scalars(network.masses.segment(body.first_particle, body.particle_count)), of_body(springs.first),
-                        of_body(springs.second), of_body(springs.rest_length), of_body(springs.stiffness),
-                        of_body(springs.damping));
+  return fingerprint_of_all(Points(network.positions.middleCols(body.first_particle, body.particle_count)),
+                            Points(start.x.middleCols(body.first_particle, body.particle_count)),
+                            Points(start.v.middleCols(body.first_particle, body.particle_count)),
+                            Scalars(network.masses.segment(body.first_particle, body.particle_count)), of_body(springs.first),
+                            of_body(springs.second), of_body(springs.rest_length), of_body(springs.stiffness),
+                            of_body(springs.damping));
 }
 
 std::uint64_t fingerprint_of_shape(const Obstacle& obstacle) {
   if (const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry)) {
-    return fingerprint_of(mesh->mesh->vertices, mesh->mesh->triangles);
+    return fingerprint_of_all(mesh->mesh->vertices, mesh->mesh->triangles);
   }
   if (const auto* deforming = std::get_if<SequenceGeometry>(&obstacle.geometry)) {
-    return fingerprint_of(deforming->sequence->frames, deforming->sequence->triangles);
+    return fingerprint_of_all(deforming->sequence->frames, deforming->sequence->triangles);
   }
   return 0;  // the scene says all of a primitive
 }

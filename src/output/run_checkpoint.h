@@ -1,7 +1,7 @@
 // What a run adds to the checkpoint of its simulator, and whether a run can go on from one.
 #pragma once
 
-#include "base/binary_archive.h"
+#include "base/files/binary_archive.h"
 #include "output/output_folder.h"
 #include "output/run_summary.h"
 #include "simulation/checkpoint.h"

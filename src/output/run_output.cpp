@@ -1,7 +1,7 @@
 #include "output/run_output.h"
 
 #include "base/error.h"
-#include "base/file_writer.h"
+#include "base/files/file_writer.h"
 #include "dynamics/state/simulation_state.h"
 #include "output/diagnostics_csv.h"
 #include "output/file_pattern.h"
@@ -83,14 +83,17 @@ std::optional<RunRecorder> recorder_of(const Simulator& simulator, const RunFact
 
 }  // namespace
 
-RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
+RunOutput::RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFolder folder)
     : folder_(std::move(folder)),
       sequences_(sequences_of(simulator, facts)),
       copies_(facts.write_obj ? copied_files(facts.sources) : std::vector<CopiedFile>()),
       has_forces_(simulator.settings().record_forces),
       recorder_(recorder_of(simulator, facts)),
       summary_(facts, simulator.settings().step, patterns()),
-      checkpoint_interval_(facts.checkpoint_interval) {
+      checkpoint_interval_(facts.checkpoint_interval) {}
+
+RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
+    : RunOutput(facts, simulator, std::move(folder)) {
   if (checkpoint_interval_ > 0.0) identity_ = identity_of(facts.scene, simulator);
   folder_.expect_free(patterns());
   const std::string head = recorder_ ? encode_head(recorder_->model(), recorder_->frame(simulator)) : "";
@@ -108,15 +111,9 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
 
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator, const Checkpoint& from,
                      std::string& monitor)
-    : folder_(std::move(folder)),
-      sequences_(sequences_of(simulator, facts)),
-      copies_(facts.write_obj ? copied_files(facts.sources) : std::vector<CopiedFile>()),
-      has_forces_(simulator.settings().record_forces),
-      recorder_(recorder_of(simulator, facts)),
-      summary_(facts, simulator.settings().step, patterns()),
-      checkpoint_interval_(facts.checkpoint_interval),
-      kept_(from),
-      kept_is_written_(true) {
+    : RunOutput(facts, simulator, std::move(folder)) {
+  kept_ = from;
+  kept_is_written_ = true;
   RunCheckpoint run = run_checkpoint(from, folder_);
   const auto fail = [&](const std::string& reason) { throw FileError("resume the run", folder_.path().string(), reason); };
   if (run.files != patterns()) {
@@ -142,9 +139,9 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
 
 /// Whoever stops it can resume again: it needs only what was written before the checkpoint.
 void RunOutput::take_back_frames(const RunCheckpoint& to) {
-  folder_.shorten(kRecordFile, to.record_size);
-  folder_.shorten(kDiagnosticsFile, to.diagnostics_size);
-  folder_.shorten(kForcesFile, to.forces_size);
+  if (recorder_) folder_.cut(kRecordFile, to.record_size);
+  folder_.cut(kDiagnosticsFile, to.diagnostics_size);
+  if (has_forces_) folder_.cut(kForcesFile, to.forces_size);
   for (const ObjSequence& sequence : sequences_) {
     if (!sequence.changes()) continue;
     const std::filesystem::path last = folder_.path() / fill_pattern(sequence.pattern(), progress_.frames_written);

@@ -54,6 +54,9 @@ class RunOutput {
   void finish(const std::string& outcome);
 
  private:
+  /// Writes nothing yet.
+  RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFolder folder);
+
   void write_summary();
   void take_back_frames(const RunCheckpoint& to);
   std::string write_checkpoint_of_run();

@@ -1,8 +1,9 @@
 #include "simulation/checkpoint.h"
 
 #include "base/error.h"
-#include "base/file_writer.h"
-#include "base/sealed_file.h"
+#include "base/files/file_writer.h"
+#include "base/files/fingerprint.h"
+#include "base/files/sealed_file.h"
 #include "dynamics/state/state_members.h"
 #include "network/model/spring_network.h"
 #include "simulation/model.h"
@@ -31,11 +32,7 @@ void visit_members(S& c, const Visit& visit) {
   visit(c.bodies, c.obstacles, c.state, c.last, c.run);
 }
 
-std::uint64_t fingerprint_of_springs(const std::vector<Index>& ends) {
-  Fingerprint fingerprint;
-  fingerprint.add(to_bytes(ends));
-  return fingerprint.value();
-}
+std::uint64_t fingerprint_of_springs(const std::vector<Index>& ends) { return fingerprint_of(to_bytes(ends)); }
 
 std::vector<NamedCount> bodies_of(const SpringNetwork& network) {
   std::vector<NamedCount> bodies;

@@ -1,6 +1,7 @@
 #include "simulation/scratch.h"
 
 #include "dynamics/contact/collision_surface_builder.h"
+#include "dynamics/forces/material_dampers.h"
 #include "dynamics/forces/shared_force.h"
 #include "network/model/spring_failure.h"
 #include "simulation/model/force_factory.h"
@@ -33,7 +34,7 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
       surroundings(network, obstacles, structure.groups, settings.step, settings.gravity) {
   if (splits_dampers(settings, bounds)) {
     const double most = most_damping_rate(settings.step);
-    integrator->set_dampers(dampers_of_materials(network, most), std::min(most, bounds.material_damping));
+    integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
   }
   note_touched(control.touched, structure.groups);
   add_forces(network, settings, obstacles, control);

@@ -23,6 +23,9 @@ const std::map<std::string, int> kFloors = {{"base", 0},       {"geometry", 1}, 
 
 /// What the sub-folders of a folder may include of it, the lowest first. Files that stand in the folder itself are on top.
 const std::map<std::string, std::set<std::string>> kSubFloors = {
+    {"base/files", {""}},
+    {"base/machine", {""}},
+
     {"geometry/queries", {}},
     {"geometry/motion", {}},
     {"geometry/mesh", {"queries"}},

@@ -1,6 +1,6 @@
 #include "collision/core/sphere_set.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 
 #include <algorithm>
 #include <array>

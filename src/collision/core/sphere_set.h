@@ -1,7 +1,7 @@
 // Spheres in SIMD lanes, one for each particle of a patch: finds the particles outside of their spheres.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 #include "base/types.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #include "collision/element_bvh/element_bvh_leaf.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 
 #include <cstring>
 #include <limits>

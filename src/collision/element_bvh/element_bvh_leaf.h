@@ -1,7 +1,7 @@
 // Leaf of the element BVH: eight elements in single precision.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 #include "collision/element_bvh/vertex_bounds.h"
 #include "collision/surface/collision_surface.h"
 

@@ -1,6 +1,6 @@
 #include "collision/element_bvh/element_pair_filter.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 
 #include <limits>
 

@@ -1,6 +1,6 @@
 #include "collision/element_bvh/feature_filters.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 
 namespace sprung {
 namespace {

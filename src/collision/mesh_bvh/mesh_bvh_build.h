@@ -2,7 +2,7 @@
 // into one with up to eight children per node.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 #include "base/types.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>

@@ -1,7 +1,7 @@
 #include "collision/mesh_bvh/mesh_bvh.h"
 #include "collision/mesh_bvh/traversal_stack.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "collision/mesh_bvh/triangle_packet_distance.h"
 #include "geometry/queries/side_of_plane.h"
 

@@ -2,7 +2,7 @@
 // usual depth, on the heap for very deep ones.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 #include "base/types.h"
 #include "collision/mesh_bvh/mesh_bvh.h"
 

@@ -1,7 +1,7 @@
 // Up to four triangles in SIMD lanes: the leaves of a mesh BVH.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 #include "base/types.h"
 
 #include <array>

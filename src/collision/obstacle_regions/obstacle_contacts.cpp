@@ -1,6 +1,6 @@
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
+#include "base/machine/simd.h"
 #include "base/parallel.h"
-#include "base/simd.h"
 #include "collision/core/contact.h"
 #include "collision/obstacle_regions/obstacle_safe_regions.h"
 #include "collision/obstacles/obstacle_frame.h"

@@ -1,6 +1,6 @@
 #include "collision/safe_regions/mesh_safe_region.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "collision/mesh_bvh/traversal_stack.h"
 #include "collision/safe_regions/safe_region_builder.h"
 

@@ -1,7 +1,7 @@
 #include "dynamics/constraints/hexahedron_kernel.h"
 
-#include "base/kernel.h"
-#include "base/simd.h"
+#include "base/machine/kernel.h"
+#include "base/machine/simd.h"
 
 #include <cmath>
 

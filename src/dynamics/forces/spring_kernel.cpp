@@ -1,6 +1,6 @@
 #include "dynamics/forces/spring_kernel.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "dynamics/numerics/simd_packed.h"
 
 namespace sprung {

@@ -1,7 +1,7 @@
 // Spring-damper forces of short batches of springs: the inner loop of SpringForce.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 
 namespace sprung {
 

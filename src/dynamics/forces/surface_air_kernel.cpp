@@ -1,7 +1,7 @@
 #include "dynamics/forces/surface_air_kernel.h"
 
-#include "base/kernel.h"
-#include "base/simd.h"
+#include "base/machine/kernel.h"
+#include "base/machine/simd.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "dynamics/integrators/verlet_kernel.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 
 namespace sprung {
 

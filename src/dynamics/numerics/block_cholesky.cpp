@@ -1,6 +1,6 @@
 #include "dynamics/numerics/block_cholesky.h"
 
-#include "base/tiny_numbers.h"
+#include "base/machine/tiny_numbers.h"
 
 #include <algorithm>
 #include <cmath>

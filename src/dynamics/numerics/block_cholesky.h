@@ -1,7 +1,7 @@
 // A direct solver for sparse symmetric matrices of 3 x 3 blocks.
 #pragma once
 
-#include "base/huge_pages.h"
+#include "base/machine/huge_pages.h"
 #include "dynamics/numerics/block_matrix.h"
 #include "dynamics/numerics/front_layout.h"
 

@@ -1,6 +1,6 @@
 #include "dynamics/numerics/front_kernel.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "dynamics/numerics/front_tiles.h"
 
 namespace sprung {

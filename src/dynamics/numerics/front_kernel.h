@@ -1,8 +1,8 @@
 // Dense elimination of one supernode (a front), in whole SIMD registers.
 #pragma once
 
-#include "base/kernel.h"
-#include "base/simd.h"
+#include "base/machine/kernel.h"
+#include "base/machine/simd.h"
 
 #include <span>
 

@@ -1,5 +1,5 @@
-#include "base/kernel.h"
-#include "base/simd.h"
+#include "base/machine/kernel.h"
+#include "base/machine/simd.h"
 #include "dynamics/numerics/front_kernel.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Tiles of a front in SIMD registers. For the .cpp files of kernels alone, as simd.h.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 
 namespace sprung {
 

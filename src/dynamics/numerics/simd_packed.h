@@ -4,7 +4,7 @@
 // The compiler also vectorises loops over x, y, z, but with three times as many shuffles, and shuffles bound these loops.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 
 namespace sprung {
 

@@ -1,5 +1,6 @@
 #include "dynamics/state/simulation_state.h"
 
+#include "base/files/fingerprint.h"
 #include "dynamics/state/state_members.h"
 #include "network/model/spring_network.h"
 

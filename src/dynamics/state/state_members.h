@@ -1,7 +1,7 @@
 // The members of a state, for comparisons, hashes and files (see base/binary_archive.h).
 #pragma once
 
-#include "base/binary_archive.h"
+#include "base/files/binary_archive.h"
 #include "dynamics/state/simulation_state.h"
 
 namespace sprung {

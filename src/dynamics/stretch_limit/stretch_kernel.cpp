@@ -1,6 +1,6 @@
 #include "dynamics/stretch_limit/stretch_kernel.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "dynamics/stretch_limit/layout_gathered.h"
 #include "dynamics/stretch_limit/layout_pairs.h"
 #include "dynamics/stretch_limit/layout_runs.h"

@@ -1,7 +1,7 @@
 // Projection of springs onto their limits: the inner loop of StretchLimit.
 #pragma once
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "dynamics/stretch_limit/spring_batches.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "dynamics/stretch_newton/component_impulses.h"
 
-#include "base/tiny_numbers.h"
+#include "base/machine/tiny_numbers.h"
 
 #include <cstddef>
 #include <utility>

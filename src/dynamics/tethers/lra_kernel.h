@@ -1,7 +1,7 @@
 // Projection of particles into the reach of their pins: the inner loop of LongRangeAttachments.
 #pragma once
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "base/types.h"
 
 namespace sprung {

@@ -1,7 +1,7 @@
 #include "geometry/import/mesh_file.h"
 
+#include "base/files/text_encoding.h"
 #include "base/format.h"
-#include "base/text_encoding.h"
 
 #include <algorithm>
 #include <cerrno>

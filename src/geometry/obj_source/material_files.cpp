@@ -1,7 +1,7 @@
 #include "geometry/obj_source/material_files.h"
 
+#include "base/files/text_encoding.h"
 #include "base/format.h"
-#include "base/text_encoding.h"
 #include "geometry/import/text_words.h"
 #include "geometry/obj_source/obj_lines.h"
 

@@ -1,6 +1,6 @@
 #include "geometry/queries/closest_pair.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "geometry/queries/closest_point_simd.h"
 #include "geometry/queries/segment_pair_simd.h"
 

@@ -1,7 +1,7 @@
 // Closest points of four triangles, each to its own query point. For the .cpp files of kernels.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 #include "geometry/queries/closest_point.h"
 
 namespace sprung {

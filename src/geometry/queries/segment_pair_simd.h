@@ -1,7 +1,7 @@
 // Closest points of four pairs of segments. For the .cpp files of kernels.
 #pragma once
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 
 namespace sprung {
 

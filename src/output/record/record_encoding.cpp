@@ -1,5 +1,6 @@
 #include "output/record/record_encoding.h"
 
+#include "base/files/fingerprint.h"
 #include "output/record/array_block.h"
 #include "output/record/record_format.h"
 
@@ -142,8 +143,7 @@ void append_u64(std::string& bytes, std::uint64_t number) {
 std::string encode_frame(const RecordedFrame& frame) { return arrays_of(frame).bytes(); }
 
 std::string fingerprint(std::string_view head) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char byte : head) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+  const std::uint64_t hash = fingerprint_of(head);
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string digits;
   for (int shift = 60; shift >= 0; shift -= 4) digits += kDigits[(hash >> static_cast<unsigned>(shift)) & 15U];

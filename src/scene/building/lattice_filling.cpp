@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/format.h"
-#include "base/machine_memory.h"
+#include "base/machine/machine_memory.h"
 #include "collision/mesh_bvh/mesh_bvh.h"
 #include "geometry/import/mesh_import.h"
 #include "geometry/mesh/edge_division.h"

@@ -2,7 +2,7 @@
 
 #include "base/format.h"
 #include "base/grouped_warnings.h"
-#include "base/machine_memory.h"
+#include "base/machine/machine_memory.h"
 #include "base/problem_list.h"
 #include "geometry/mesh/mesh_faults.h"
 #include "geometry/mesh/weld.h"

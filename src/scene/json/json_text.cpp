@@ -1,6 +1,6 @@
 #include "scene/json/json_text.h"
 
-#include "base/text_encoding.h"
+#include "base/files/text_encoding.h"
 #include "scene/json/json_mistake.h"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "scene/reading/scene_reader.h"
 
-#include "base/text_encoding.h"
+#include "base/files/text_encoding.h"
 #include "scene/json/near_file.h"
 #include "scene/json/overrides.h"
 #include "scene/reading/scene_rules.h"

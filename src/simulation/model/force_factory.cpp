@@ -52,8 +52,6 @@ std::vector<LinearElement> penalty_elements(const SpringNetwork& network, const 
   return anchors;
 }
 
-Forces dampers_of_materials(const SpringNetwork& network, double most) { return material_dampers(network, most); }
-
 Constraints network_constraints(const SpringNetwork& network) {
   Constraints constraints;
   const auto any = [&](const auto& asks) { return std::ranges::any_of(network.bodies, asks); };

@@ -32,9 +32,6 @@ enum class MaterialDampers : std::uint8_t { within, apart };
 /// Elements that bound the step as this contact does.
 [[nodiscard]] std::vector<LinearElement> penalty_elements(const SpringNetwork& network, const SimulatorSettings& settings);
 
-/// The dampers of materials alone, with the rate at which they damp at most [1/s].
-[[nodiscard]] Forces dampers_of_materials(const SpringNetwork& network, double most);
-
 /// Carried surfaces and volumes.
 [[nodiscard]] Constraints network_constraints(const SpringNetwork& network);
 

@@ -97,7 +97,7 @@ EnergyGain::EnergyGain(const SpringNetwork& network, const SimulatorSettings& se
       bounce_height_(bounce_height_of(network, settings)),
       undriven_(is_undriven(network, settings, obstacles)) {}
 
-void EnergyGain::note_frame(int frame, const Energies& energies) {
+void EnergyGain::note_frame(int frame, const Energies& energies, EnergyGainMemory& memory) const {
   if (!undriven_ || frame == 1) return;
   const FrameEnergy now{frame, energies.kinetic + energies.of_springs() + energies.gravity};
   memory.max_kinetic = std::max(memory.max_kinetic, energies.kinetic);
@@ -109,16 +109,16 @@ void EnergyGain::note_frame(int frame, const Energies& energies) {
 
 /// A falling particle is up to half a step's displacement, g t dt / 2, from where its speed implies; a body on a stretch limit
 /// bounces by less than the length of a spring; a resting particle moves by rounding.
-double EnergyGain::apparent_gain(const Points& positions) const {
+double EnergyGain::apparent_gain(const Points& positions, const EnergyGainMemory& memory) const {
   const double speed = std::sqrt(2.0 * memory.max_kinetic / mass_);
   const double height = speed * step_ + bounce_height_;
   const double rounding = rounding_speed(positions, step_);
   return mass_ * (gravity_ * height + 0.5 * rounding * rounding);
 }
 
-std::optional<std::string> EnergyGain::gain(const Points& positions) const {
+std::optional<std::string> EnergyGain::gain(const Points& positions, const EnergyGainMemory& memory) const {
   const double gained = memory.rise_end.energy - memory.rise_begin.energy;
-  if (!(gained > kMaxGain * memory.max_kinetic) || gained <= apparent_gain(positions)) return std::nullopt;
+  if (!(gained > kMaxGain * memory.max_kinetic) || gained <= apparent_gain(positions, memory)) return std::nullopt;
   return "the total energy rose from " + format_number(memory.rise_begin.energy, 3) + " J in frame " +
          std::to_string(memory.rise_begin.frame) + " to " + format_number(memory.rise_end.energy, 3) + " J in frame " +
          std::to_string(memory.rise_end.frame) + ", although nothing drives the scene. Use a smaller step or more damping.";

@@ -78,24 +78,22 @@ struct EnergyGainMemory {
   FrameEnergy rise_end;
 };
 
-/// Answers at the end of a run: did the energy rise between two frames, although nothing drives the scene?
+/// Answers at the end of a run: did the energy rise between two frames, although nothing drives the scene? The caller keeps the
+/// memory, which another run of the same scene may go on from.
 class EnergyGain {
  public:
   EnergyGain(const SpringNetwork& network, const SimulatorSettings& settings, const std::vector<Obstacle>& obstacles);
 
   /// Records the energies of a frame. Frame 1 is ignored, as limits and contact may add energy in the first steps.
-  void note_frame(int frame, const Energies& energies);
+  void note_frame(int frame, const Energies& energies, EnergyGainMemory& memory) const;
 
   /// Describes the largest rise of the total energy between two frames, if it exceeds half of the largest kinetic energy and what
   /// step size, stretch limit and rounding explain. `positions` [m] give the size of rounding. Empty if the scene is driven:
   /// moving pins or obstacles, wind, or explicit Euler, which gains energy by itself.
-  [[nodiscard]] std::optional<std::string> gain(const Points& positions) const;
-
-  /// Of the frames so far; another run of the same scene may go on from it.
-  EnergyGainMemory memory;
+  [[nodiscard]] std::optional<std::string> gain(const Points& positions, const EnergyGainMemory& memory) const;
 
  private:
-  [[nodiscard]] double apparent_gain(const Points& positions) const;
+  [[nodiscard]] double apparent_gain(const Points& positions, const EnergyGainMemory& memory) const;
 
   double mass_;           ///< [kg]
   double step_;           ///< [s]

@@ -1,6 +1,6 @@
 #include "dynamics/stretch_limit/spring_batches.h"
 
-#include "base/simd.h"
+#include "base/machine/simd.h"
 #include "dynamics/networks.h"
 #include "dynamics/stretch_limit/batch_order.h"
 

@@ -1,7 +1,7 @@
 #include "dynamics/stretch_limit/stretch_kernel.h"
 
-#include "base/kernel.h"
-#include "base/simd.h"
+#include "base/machine/kernel.h"
+#include "base/machine/simd.h"
 #include "network/network_builder.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "dynamics/tethers/long_range_attachments.h"
 
-#include "base/kernel.h"
+#include "base/machine/kernel.h"
 #include "base/parallel.h"
 #include "dynamics/networks.h"
 #include "dynamics/stretch_limit/stretch_limit.h"

@@ -1,6 +1,6 @@
 #include "scene/building/memory_check.h"
 
-#include "base/machine_memory.h"
+#include "base/machine/machine_memory.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "base/tiny_numbers.h"
+#include "base/machine/tiny_numbers.h"
 
 #include <gtest/gtest.h>
 

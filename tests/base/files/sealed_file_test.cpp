@@ -1,4 +1,4 @@
-#include "base/sealed_file.h"
+#include "base/files/sealed_file.h"
 
 #include "base/error.h"
 #include "base/scratch_folder.h"

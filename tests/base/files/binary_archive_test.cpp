@@ -1,4 +1,4 @@
-#include "base/binary_archive.h"
+#include "base/files/binary_archive.h"
 
 #include <gtest/gtest.h>
 
@@ -105,18 +105,6 @@ TEST(BinaryArchive, EqualValuesAloneHaveEqualBytes) {
   other.points(2, 1) = std::nextafter(0.25, 1.0);
   EXPECT_NE(to_bytes(other), to_bytes(sample()));
   EXPECT_NE(to_bytes(std::vector<std::string>{"ab", "c"}), to_bytes(std::vector<std::string>{"a", "bc"}));
-}
-
-// FNV-1a: values of the reference implementation.
-TEST(Fingerprint, IsThatOfThePaper) {
-  const auto of = [](std::string_view text) {
-    Fingerprint fingerprint;
-    fingerprint.add(text);
-    return fingerprint.value();
-  };
-  EXPECT_EQ(of(""), 0xcbf29ce484222325U);
-  EXPECT_EQ(of("a"), 0xaf63dc4c8601ec8cU);
-  EXPECT_EQ(of("foobar"), 0x85944171f73967e8U);
 }
 
 }  // namespace

@@ -208,16 +208,4 @@ void from_bytes(std::string_view bytes, Value& value) {
   if (reader.remaining() > 0) throw BytesError();
 }
 
-/// FNV-1a (Fowler, Noll and Vo 1991), 64 bits. Texts that differ in one byte have different results.
-class Fingerprint {
- public:
-  void add(std::string_view bytes) {
-    for (const char byte : bytes) value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325U;
-};
-
 }  // namespace sprung

@@ -1,4 +1,4 @@
-#include "base/text_encoding.h"
+#include "base/files/text_encoding.h"
 
 #include <gtest/gtest.h>
 

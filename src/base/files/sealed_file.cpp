@@ -1,7 +1,8 @@
-#include "base/sealed_file.h"
+#include "base/files/sealed_file.h"
 
-#include "base/binary_archive.h"
 #include "base/error.h"
+#include "base/files/binary_archive.h"
+#include "base/files/fingerprint.h"
 
 #include <cerrno>
 #include <cstring>
@@ -11,12 +12,6 @@
 
 namespace sprung {
 namespace {
-
-std::uint64_t fingerprint_of(std::string_view bytes) {
-  Fingerprint fingerprint;
-  fingerprint.add(bytes);
-  return fingerprint.value();
-}
 
 /// Removes a number or a short text from the begin of the bytes. Throws BytesError.
 template <class Value>
