@@ -186,6 +186,27 @@ TEST_F(Resume, AnInterruptChangesNoBit) {
   expect_same(folder(), undisturbed(scene));
 }
 
+// Two pins pull a rope beyond its limit in the first frames. The warning at the end counts these, and the one about their vertices
+// comes once.
+TEST_F(Resume, WarningsAreThoseOfAllFrames) {
+  json scene = rope_scene();
+  scene["frame_rate"] = 25;
+  scene["step"] = 0.0001;  // 400 steps a frame: a run can resume after 11 of them
+  scene["duration"] = 4.0;
+  scene["stretch_limit"] = {{"max_stretch", 0.02}};
+  scene["bodies"]["rope"]["pins"] = json::parse(R"([
+    { "indices": [0] },
+    { "indices": [4],
+      "motion": { "keyframes": [ { "time": 0 }, { "time": 0.1, "position": [0.2, 0, 0] }, { "time": 0.2, "position": [0, 0, 0] } ] } }
+  ])");
+  const std::string file = save(scene);
+  run_until(20, file);
+  EXPECT_EQ(resume(file).code, 0);
+  expect_same(folder(), undisturbed(file));
+  const json warnings = json::parse(read_text(folder("whole") / "run.json"))["warnings"];
+  EXPECT_THAT(warnings.dump(), HasSubstr("the stretch limit was missed"));
+}
+
 // As a kill leaves them while the program appends.
 TEST_F(Resume, HalfLinesAndFilesOfLaterFramesAreCut) {
   json scene = long_rope_scene();

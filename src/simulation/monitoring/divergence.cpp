@@ -1,7 +1,7 @@
 #include "simulation/monitoring/divergence.h"
 
-#include "base/finite.h"
 #include "base/format.h"
+#include "base/machine/finite.h"
 #include "base/parallel.h"
 #include "network/model/activity.h"
 

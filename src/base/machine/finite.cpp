@@ -1,4 +1,4 @@
-#include "base/finite.h"
+#include "base/machine/finite.h"
 
 #include "base/machine/kernel.h"
 
