@@ -97,7 +97,7 @@ class Parser {
         run->add_flag("--overwrite", run_.overwrite, "Remove the files of an earlier run from the folder, and nothing else");
     run->add_flag("--resume", run_.resume, "Go on with the run in the folder from its last checkpoint, or begin it")
         ->excludes(overwrite);
-    run->add_option("--checkpoint", run_.checkpoint, "Least seconds between two checkpoints, 60 by default; 0: none")
+    run->add_option("--checkpoint", run_.checkpoint, "Seconds between two checkpoints, 60 by default; 0: none")
         ->check(is_interval)
         ->type_name("SECONDS");
   }

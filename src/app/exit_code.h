@@ -10,7 +10,7 @@ enum class ExitCode : int {
   invalid = 3,        ///< the scene, a mesh or the files of a run are invalid
   diverged = 4,       ///< the simulation diverged
   file = 5,           ///< the scene file or a run cannot be read, or the output cannot be written
-  interrupted = 130,  ///< by SIGINT or SIGTERM; the present frame is not written
+  interrupted = 130,  ///< by a signal; a frame that does not end soon is not written
 };
 
 }  // namespace sprung

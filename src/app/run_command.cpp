@@ -54,6 +54,23 @@ void announce(const LoadedScene& loaded) {
   for (const std::string& warning : loaded.warnings) print_warning(warning);
 }
 
+// An interrupt waits so long [s] for the end of the frame, from which the run then can go on. Whoever ends a program mostly gives
+// it 10 s. Each frame that takes longer gets a checkpoint.
+constexpr double kPatience = 5.0;
+
+/// Whether an interrupt has waited long enough.
+class OutOfPatience {
+ public:
+  bool operator()() {
+    if (!interrupted()) return false;
+    if (!since_) since_ = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - *since_).count() > kPatience;
+  }
+
+ private:
+  std::optional<std::chrono::steady_clock::time_point> since_;
+};
+
 /// Nothing if the user interrupts.
 std::optional<FrameDiagnostics> next_frame(FrameRunner& runner) {
   try {
@@ -80,15 +97,20 @@ void note_failed_checkpoint(Run& run, const std::string& failure) {
 void write_frames(Run& run, bool quiet) {
   FrameRunner runner(run.loaded.simulator);
   Progress progress(run.loaded.frames, run.output.frames_written(), quiet);
-  run.loaded.simulator.stop_when(interrupted);
+  run.loaded.simulator.stop_when(OutOfPatience());
+  bool is_whole = true;  // else the simulator stopped within a frame, and a run cannot go on from there
   for (int frame = run.output.frames_written() + 1; frame <= run.loaded.frames && !interrupted(); ++frame) {
     const auto diagnostics = frame == 1 ? runner.first_frame() : next_frame(runner);
-    if (!diagnostics) break;
+    is_whole = diagnostics.has_value();
+    if (!is_whole) break;
     run.output.write_frame(run.loaded.simulator, *diagnostics);
     run.watch.note_frame(*diagnostics);
-    note_failed_checkpoint(run, run.output.note_checkpoint(run.loaded.simulator, run.watch.memory()));
+    const auto write =
+        diagnostics->frame_ms > 1e3 * kPatience ? &RunOutput::write_checkpoint_now : &RunOutput::write_due_checkpoint;
+    note_failed_checkpoint(run, (run.output.*write)(run.loaded.simulator, run.watch.memory()));
     progress.frame_done(frame);
   }
+  if (is_whole) note_failed_checkpoint(run, run.output.write_checkpoint_now(run.loaded.simulator, run.watch.memory()));
   run.watch.finish();
 }
 
@@ -99,21 +121,17 @@ void print_last_frame(const LoadedScene& loaded, int frames, const std::string& 
 }
 
 void write_run(Run& run, const RunOptions& options) {
-  const auto finish = [&](const std::string& outcome) {
-    note_failed_checkpoint(run, run.output.write_last_checkpoint(run.loaded.simulator));
-    run.output.finish(outcome);
-  };
   // The error that ended the run matters more than a failure to record it.
   const auto finish_without_error = [&](const std::string& outcome) {
     try {
-      finish(outcome);
+      run.output.finish(outcome);
     } catch (const FileError&) {
       return;
     }
   };
   try {
     write_frames(run, options.quiet);
-    finish(run.output.frames_written() == run.loaded.frames ? "done" : "interrupted");
+    run.output.finish(run.output.frames_written() == run.loaded.frames ? "done" : "interrupted");
   } catch (const StepError& error) {
     finish_without_error(std::string("diverged: ") + error.what());
     print_last_frame(run.loaded, run.output.frames_written(), options.out);
@@ -129,7 +147,7 @@ RunOutput open_output(OutputFolder folder, const RunFacts& facts, const ResumePo
                       std::string& memory) {
   if (point.checkpoint) {
     RunOutput output(std::move(folder), facts, loaded.simulator, *point.checkpoint, memory);
-    loaded.simulator.restore(point.checkpoint->state);
+    loaded.simulator.restore(*point.checkpoint);
     return output;
   }
   if (point.has_run) folder.remove_run();

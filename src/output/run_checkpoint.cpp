@@ -89,16 +89,6 @@ std::uint64_t fingerprint_of_body(const Model& model, const Body& body) {
                             of_body(springs.damping));
 }
 
-std::uint64_t fingerprint_of_shape(const Obstacle& obstacle) {
-  if (const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry)) {
-    return fingerprint_of_all(mesh->mesh->vertices, mesh->mesh->triangles);
-  }
-  if (const auto* deforming = std::get_if<SequenceGeometry>(&obstacle.geometry)) {
-    return fingerprint_of_all(deforming->sequence->frames, deforming->sequence->triangles);
-  }
-  return 0;  // the scene says all of a primitive
-}
-
 void add(const std::string& difference, std::vector<std::string>& all) {
   if (std::ranges::find(all, difference) == all.end()) all.push_back(difference);
 }

@@ -14,6 +14,8 @@
 
 namespace sprung {
 
+class Simulator;
+
 /// What must be the same if a run goes on: the scene without its duration and the paths of files, and what was read from these.
 struct RunIdentity {
   std::map<std::string, std::string> keys;            ///< JSON text of each value of the scene, by its path

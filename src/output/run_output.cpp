@@ -112,8 +112,7 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator, const Checkpoint& from,
                      std::string& monitor)
     : RunOutput(facts, simulator, std::move(folder)) {
-  kept_ = from;
-  kept_is_written_ = true;
+  last_checkpoint_ = start_;
   RunCheckpoint run = run_checkpoint(from, folder_);
   const auto fail = [&](const std::string& reason) { throw FileError("resume the run", folder_.path().string(), reason); };
   if (run.files != patterns()) {
@@ -210,9 +209,15 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
   }
 }
 
-std::string RunOutput::note_checkpoint(const Simulator& simulator, const std::string& monitor) {
+std::string RunOutput::write_due_checkpoint(const Simulator& simulator, const std::string& monitor) {
+  if (last_checkpoint_ && seconds_since(*last_checkpoint_) < checkpoint_interval_) return "";
+  return write_checkpoint_now(simulator, monitor);
+}
+
+std::string RunOutput::write_checkpoint_now(const Simulator& simulator, const std::string& monitor) {
   if (checkpoint_interval_ <= 0.0) return "";
-  if (is_resumable(simulator.state())) {
+  last_checkpoint_ = std::chrono::steady_clock::now();
+  try {
     RunCheckpoint run;
     run.identity = identity_;
     run.files = patterns();
@@ -221,27 +226,9 @@ std::string RunOutput::note_checkpoint(const Simulator& simulator, const std::st
     if (recorder_) run.record_size = folder_.size(kRecordFile);
     run.diagnostics_size = folder_.size(kDiagnosticsFile);
     if (has_forces_) run.forces_size = folder_.size(kForcesFile);
-    kept_ = checkpoint_of(simulator);
-    kept_->run = bytes_of(run);
-    kept_is_written_ = false;
-  }
-  if (kept_is_written_ || seconds_since(last_checkpoint_) < checkpoint_interval_) return "";
-  return write_checkpoint_of_run();
-}
-
-std::string RunOutput::write_last_checkpoint(const Simulator& simulator) {
-  if (checkpoint_interval_ <= 0.0 || !kept_) return "";
-  const bool is_at_frame = simulator.state().step_in_frame == 0 && simulator.state().frame + 1 == progress_.frames_written;
-  kept_->last.reset();
-  if (is_at_frame && simulator.state().step != kept_->state.step) kept_->last = simulator.state();
-  return write_checkpoint_of_run();
-}
-
-std::string RunOutput::write_checkpoint_of_run() {
-  last_checkpoint_ = std::chrono::steady_clock::now();
-  try {
-    write_checkpoint(folder_.path() / kCheckpointFile, *kept_);
-    kept_is_written_ = true;
+    Checkpoint checkpoint = simulator.checkpoint();
+    checkpoint.run = bytes_of(run);
+    write_checkpoint(folder_.path() / kCheckpointFile, checkpoint);
   } catch (const FileError& error) {
     return error.what();
   }

@@ -39,14 +39,14 @@ class RunOutput {
   /// Adds a warning; the next frame, or `finish`, writes it to run.json.
   void add_warning(const std::string& warning) { progress_.warnings.push_back(warning); }
 
-  /// Call it after write_frame(). Keeps the present state if a run can resume from it (see is_resumable), with what the caller
-  /// remembers of the frames so far, and writes the last state that was kept if the interval of the facts has passed since the last
-  /// checkpoint. Returns why a checkpoint could not be written; empty without a failure. A former checkpoint then stays.
-  std::string note_checkpoint(const Simulator& simulator, const std::string& monitor);
+  /// Call it after write_frame(). Writes a checkpoint, with what the caller remembers of the frames so far, if there is none or the
+  /// interval of the facts has passed since the last one. Returns why it could not be written; empty without a failure. A former
+  /// checkpoint then stays.
+  std::string write_due_checkpoint(const Simulator& simulator, const std::string& monitor);
 
-  /// Call it at the end of a run: writes the last state that was kept, and the present one for scenes that begin with it. Returns
-  /// as note_checkpoint().
-  std::string write_last_checkpoint(const Simulator& simulator);
+  /// Writes a checkpoint unless the facts ask for none. Call it before warnings that count all frames. Requires that the simulator
+  /// is at the last frame that was written. Returns as write_due_checkpoint().
+  std::string write_checkpoint_now(const Simulator& simulator, const std::string& monitor);
 
   [[nodiscard]] int frames_written() const { return progress_.frames_written; }
 
@@ -59,7 +59,6 @@ class RunOutput {
 
   void write_summary();
   void take_back_frames(const RunCheckpoint& to);
-  std::string write_checkpoint_of_run();
   [[nodiscard]] std::vector<std::string> patterns() const;
 
   OutputFolder folder_;
@@ -73,9 +72,7 @@ class RunOutput {
   double seconds_before_ = 0.0;  ///< of the run, before this output was made [s], wall time
   double checkpoint_interval_;   ///< [s]; 0: none
   RunIdentity identity_{};       ///< empty without checkpoints
-  std::optional<Checkpoint> kept_;
-  bool kept_is_written_ = false;
-  std::chrono::steady_clock::time_point last_checkpoint_ = start_;
+  std::optional<std::chrono::steady_clock::time_point> last_checkpoint_{};
 };
 
 }  // namespace sprung

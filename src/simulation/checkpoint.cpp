@@ -7,7 +7,6 @@
 #include "dynamics/state/state_members.h"
 #include "network/model/spring_network.h"
 #include "simulation/model.h"
-#include "simulation/simulator.h"
 
 #include <algorithm>
 
@@ -29,7 +28,7 @@ void visit_members(S& n, const Visit& visit) {
 }
 template <Same<Checkpoint> S, class Visit>
 void visit_members(S& c, const Visit& visit) {
-  visit(c.bodies, c.obstacles, c.state, c.last, c.run);
+  visit(c.bodies, c.obstacles, c.state, c.caches, c.model, c.run);
 }
 
 std::uint64_t fingerprint_of_springs(const std::vector<Index>& ends) { return fingerprint_of(to_bytes(ends)); }
@@ -47,12 +46,38 @@ std::vector<NamedCount> bodies_of(const SpringNetwork& network) {
   return bodies;
 }
 
-Checkpoint checkpoint_of(const Simulator& simulator) {
-  Checkpoint checkpoint;
-  checkpoint.bodies = bodies_of(simulator.model()->network());
-  checkpoint.state = simulator.state();
-  for (const Obstacle& obstacle : simulator.obstacles()) checkpoint.obstacles.push_back({obstacle.name});
-  return checkpoint;
+std::uint64_t fingerprint_of_shape(const Obstacle& obstacle) {
+  Fingerprint fingerprint;
+  if (const auto* mesh = std::get_if<MeshGeometry>(&obstacle.geometry)) {
+    fingerprint.add(to_bytes(mesh->mesh->vertices));
+    fingerprint.add(to_bytes(mesh->mesh->triangles));
+    return fingerprint.value();
+  }
+  if (const auto* deforming = std::get_if<SequenceGeometry>(&obstacle.geometry)) {
+    fingerprint.add(to_bytes(deforming->sequence->frames));
+    fingerprint.add(to_bytes(deforming->sequence->triangles));
+    return fingerprint.value();
+  }
+  return 0;
+}
+
+std::uint64_t fingerprint_of(const Model& model) {
+  const SpringNetwork& network = model.network();
+  Fingerprint fingerprint;
+  fingerprint.add(to_bytes(network.positions));
+  fingerprint.add(to_bytes(network.masses));
+  fingerprint.add(to_bytes(network.springs.first));
+  fingerprint.add(to_bytes(network.springs.second));
+  fingerprint.add(to_bytes(network.springs.rest_length));
+  for (const Body& body : network.bodies) {
+    fingerprint.add(to_bytes(body.surface.triangles));
+    fingerprint.add(to_bytes(body.surface.segments));
+  }
+  for (const Obstacle& obstacle : model.obstacles().obstacles()) {
+    fingerprint.add(to_bytes(obstacle.geometry.index()));
+    fingerprint.add(to_bytes(fingerprint_of_shape(obstacle)));
+  }
+  return fingerprint.value();
 }
 
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {

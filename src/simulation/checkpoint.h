@@ -1,19 +1,18 @@
-// A state in a file, with what tells which simulators it fits.
+// A state and caches in a file, with what tells which simulators they fit.
 #pragma once
 
 #include "dynamics/state/simulation_state.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace sprung {
 
-class Simulator;
-struct Problem;
+class Model;
+struct Obstacle;
 
 /// The name of a body or an obstacle, and of a body what must be the same in a simulation that gets its state.
 struct NamedCount {
@@ -27,13 +26,10 @@ struct Checkpoint {
   std::vector<NamedCount> bodies;
   std::vector<NamedCount> obstacles;
   SimulationState state;
-  /// The last state of a run, which the simulator reached after `state`; none if it is `state`.
-  std::optional<SimulationState> last;
-  std::string run;  ///< what the output of a run adds; empty if a program saved the state
+  std::string caches;       ///< regions, pairs and factors that former steps left behind
+  std::uint64_t model = 0;  ///< fingerprint of the network and the obstacles: caches are of no use in another one
+  std::string run;          ///< what the output of a run adds; empty if a program saved the state
 };
-
-/// With the present state.
-[[nodiscard]] Checkpoint checkpoint_of(const Simulator& simulator);
 
 /// Writes a file that is on the disk when this returns. Throws FileError; a former file then stays. Takes about 5 ms per megabyte,
 /// and the time of the disk.
@@ -42,6 +38,12 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
 /// Throws FileError that tells in one line whether the file cannot be read, is no checkpoint, is truncated or damaged, or was
 /// written by another version, with the remedy. Such a state may still not fit a simulator: Simulator::restore() checks it.
 [[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file, std::string_view remedy = {});
+
+/// The fingerprint of what caches depend on: particles, springs, surfaces and the shapes of obstacles.
+[[nodiscard]] std::uint64_t fingerprint_of(const Model& model);
+
+/// The fingerprint of a mesh or a sequence of meshes; 0 for a primitive.
+[[nodiscard]] std::uint64_t fingerprint_of_shape(const Obstacle& obstacle);
 
 /// The fingerprint of the springs of a body; `ends` are particles, counted in the body.
 [[nodiscard]] std::uint64_t fingerprint_of_springs(const std::vector<Index>& ends);

@@ -161,6 +161,7 @@ Simulator::Simulator(const std::shared_ptr<const Model>& model)
 Simulator::Simulator(const Simulator& other)
     : implementation_(std::make_unique<Implementation>(other.implementation_->model, other.implementation_->control,
                                                        other.implementation_->state)) {
+  implementation_->stepper().load_caches(other.implementation_->stepper().caches());
   stop_when({});
 }
 Simulator& Simulator::operator=(const Simulator& other) {
@@ -185,17 +186,29 @@ void Simulator::restore(const SimulationState& state) {
   implementation_->stepper().begin_recording();
 }
 
-void Simulator::save(const std::filesystem::path& file) const { write_checkpoint(file, checkpoint_of(*this)); }
+Checkpoint Simulator::checkpoint() const {
+  Checkpoint checkpoint;
+  checkpoint.bodies = bodies_of(model()->network());
+  for (const Obstacle& obstacle : obstacles()) checkpoint.obstacles.push_back({obstacle.name});
+  checkpoint.state = state();
+  checkpoint.caches = implementation_->stepper().caches();
+  checkpoint.model = fingerprint_of(*model());
+  return checkpoint;
+}
 
-void Simulator::load(const std::filesystem::path& file) {
-  const Checkpoint checkpoint = read_checkpoint(file);
+void Simulator::restore(const Checkpoint& checkpoint) {
   std::vector<Problem> problems;
   for (const std::string& difference : differences(checkpoint.bodies, bodies_of(model()->network()))) {
-    problems.push_back({file.string(), "", "", difference, "load it into a simulator of the same network"});
+    problems.push_back({"", "checkpoint", "", difference, "load it into a simulator of the same network"});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
   restore(checkpoint.state);
+  if (checkpoint.model == fingerprint_of(*model())) implementation_->stepper().load_caches(checkpoint.caches);
 }
+
+void Simulator::save(const std::filesystem::path& file) const { write_checkpoint(file, checkpoint()); }
+
+void Simulator::load(const std::filesystem::path& file) { restore(read_checkpoint(file)); }
 
 StepReport Simulator::step() { return implementation_->stepper().step(); }
 

@@ -46,8 +46,6 @@ class StateRules {
     const SimulatorSettings& settings = owner_.model.settings();
     const std::int64_t steps = settings.steps_per_frame;
     require(state_.step >= 0 && state_.step <= kMostSteps, "step", state_.step, "must be from 0 to 2^53");
-    require(state_.caches_since >= 0 && state_.caches_since <= state_.step, "caches_since", state_.caches_since,
-            "must be from 0 to the number of steps");
     require(state_.frame >= 0 && state_.frame <= kMostSteps / steps, "frame", state_.frame, "must be from 0 to 2^53 steps");
     require_setting("step_length", format_number(state_.step_length), format_number(settings.step));
     require_setting("steps_per_frame", std::to_string(state_.steps_per_frame), std::to_string(steps));

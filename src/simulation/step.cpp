@@ -38,7 +38,6 @@ StepReport Stepper::step() {
       make_transition(asleep);
       report = attempt(PlanReason::wake);
     }
-    if (state_.step_in_frame == 0 && state_.step - state_.caches_since >= kStepsOfCaches) clear_caches();
     return *report;
   } catch (...) {
     if (before) {
@@ -127,11 +126,21 @@ void Stepper::return_to(const SimulationState& former) {
   load();
 }
 
-/// Results depend on caches: in last digits, and in which contacts are found. A simulator that resumes a run has none, so each run
-/// clears them at the same steps.
-void Stepper::clear_caches() {
-  constraints().roll_back(state_.contact.permitted_crossings);
-  state_.caches_since = state_.step;
+std::string Stepper::caches() const {
+  std::string bytes;
+  ByteWriter writer(ByteSink{bytes});
+  constraints().save(writer);
+  return bytes;
+}
+
+void Stepper::load_caches(std::string_view bytes) {
+  try {
+    BinaryReader reader(bytes);
+    constraints().load(reader);
+    if (reader.remaining() > 0) throw BytesError();
+  } catch (const BytesError&) {
+    constraints().roll_back(state_.contact.permitted_crossings);
+  }
 }
 
 void Stepper::load() {

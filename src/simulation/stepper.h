@@ -5,6 +5,8 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace sprung {
@@ -34,6 +36,13 @@ class Stepper {
 
   /// Continues from a former state of the model. Costs as much as a transition if its springs or its activity differ.
   void restore(const SimulationState& former);
+
+  /// Regions, pairs and factors that former steps left behind. Results depend on them: in last digits, and in which contacts are
+  /// found.
+  [[nodiscard]] std::string caches() const;
+  /// Goes on with these caches. Call it after the state was restored to that of their simulator. Caches of another limit are
+  /// ignored. Requires the same network and obstacles.
+  void load_caches(std::string_view bytes);
 
   /// Initializes the workspace from the state. `is_new`: it was just made, so that the integrator is initialized too.
   void initialize(bool is_new);
@@ -72,7 +81,6 @@ class Stepper {
   StepTrial repeat(const StepPlan& plan);
   void finish_step(std::span<const StepTrial> tried);
   void return_to(const SimulationState& former);
-  void clear_caches();
   void load();
   void prepare_step();
   [[nodiscard]] double rotation_in_step() const;

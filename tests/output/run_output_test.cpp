@@ -518,18 +518,18 @@ TEST_F(RunOutputFiles, AFullDiskKeepsTheFormerCheckpoint) {
                    simulator_);
   FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
-  EXPECT_EQ(output.note_checkpoint(simulator_, "memory"), "");
+  EXPECT_EQ(output.write_due_checkpoint(simulator_, "memory"), "");
   const std::string former = read_text(file("checkpoint.bin"));
   output.write_frame(simulator_, runner.next_frame());
   std::string failure;
   {
     const FileSizeLimit full(100);
-    failure = output.write_last_checkpoint(simulator_);
+    failure = output.write_checkpoint_now(simulator_, "memory");
   }
   EXPECT_THAT(failure, ::testing::HasSubstr("checkpoint.bin"));
   EXPECT_EQ(read_text(file("checkpoint.bin")), former);
   EXPECT_THAT(listing(scratch_ / "out"), ::testing::Not(::testing::Contains(".checkpoint.bin.tmp")));
-  EXPECT_EQ(output.write_last_checkpoint(simulator_), "");
+  EXPECT_EQ(output.write_checkpoint_now(simulator_, "memory"), "");
   EXPECT_NE(read_text(file("checkpoint.bin")), former) << "it has the last state now";
 }
 
@@ -538,7 +538,7 @@ TEST_F(RunOutputFiles, CheckpointsGiveBackWhatTheCallerRemembers) {
     RunOutput output(OutputFolder(scratch_ / "out", false), {.frames = 9, .steps_per_frame = 2, .checkpoint_interval = 1e-9},
                      simulator_);
     output.write_frame(simulator_, FrameRunner(simulator_).first_frame());
-    EXPECT_EQ(output.note_checkpoint(simulator_, "memory"), "");
+    EXPECT_EQ(output.write_due_checkpoint(simulator_, "memory"), "");
   }
   std::string memory;
   const RunOutput resumed(OutputFolder::as_it_is(scratch_ / "out"), {.frames = 9, .steps_per_frame = 2}, simulator_,

@@ -4,6 +4,8 @@
 #include "base/test_seed.h"
 #include "collision/sample_meshes.h"
 #include "dynamics/state/state_members.h"
+#include "simulation/checkpoint.h"
+#include "simulation/diagnostics.h"
 
 #include <gtest/gtest.h>
 
@@ -25,12 +27,6 @@ int number_of_run() {
   return ++runs[&current_test()];
 }
 
-void make_frame(Simulator& simulator) {
-  do {
-    simulator.step();
-  } while (simulator.state().step_in_frame != 0);
-}
-
 }  // namespace
 
 ResumeCheck::ResumeCheck(int frames) {
@@ -41,32 +37,34 @@ ResumeCheck::ResumeCheck(int frames) {
 }
 
 void ResumeCheck::begin(int frame, Simulator& simulator, StepReport& report) {
+  if (resumed_) compare(frame, simulator);
   if (frame != begin_) return;
   const int steps = static_cast<int>(fraction_ * simulator.settings().steps_per_frame);
   for (int step = 0; step < steps; ++step) report += simulator.step();
-  try {
-    compare(simulator);
-  } catch (const StepError&) {
-    return;  // the run will diverge too
-  }
+  resume(simulator);
 }
 
-void ResumeCheck::compare(const Simulator& simulator) {
-  Simulator original = simulator;  // the run keeps its caches
-  make_frame(original);
-  original.restore(original.state());
-  SimulationState state;
-  from_bytes(to_bytes(original.state()), state);
-  EXPECT_TRUE(state == original.state()) << "the bytes of the state do not hold all of it";
-  Simulator resumed = simulator;
-  resumed.restore(state);
-  for (int frame = 0; frame < kComparedFrames; ++frame) {
-    make_frame(original);
-    make_frame(resumed);
-    if (resumed.state() == original.state()) continue;
-    ADD_FAILURE() << "resumed after frame " << begin_ << ", the run differs " << frame + 1 << " frames later";
-    return;
+void ResumeCheck::resume(const Simulator& simulator) {
+  const Checkpoint before = simulator.checkpoint();
+  Checkpoint after = before;
+  from_bytes(to_bytes(before.state), after.state = {});
+  EXPECT_TRUE(after.state == before.state) << "the bytes of the state do not hold all of it";
+  resumed_.emplace(simulator);
+  resumed_->restore(resumed_->state());  // without the caches of the copy
+  resumed_->restore(after);
+  EXPECT_TRUE(resumed_->checkpoint().caches == before.caches) << "the bytes of the caches do not hold all of them";
+}
+
+void ResumeCheck::compare(int frame, const Simulator& simulator) {
+  try {
+    FrameRunner(*resumed_).next_frame();
+  } catch (const StepError&) {
+    ADD_FAILURE() << "resumed in frame " << begin_ << ", the run diverges before frame " << frame;
+    return resumed_.reset();
   }
+  const bool is_same = resumed_->state() == simulator.state();
+  EXPECT_TRUE(is_same) << "resumed in frame " << begin_ << ", the run differs in frame " << frame - 1;
+  if (!is_same || frame == begin_ + kComparedFrames) resumed_.reset();
 }
 
 }  // namespace sprung::testing

@@ -4,6 +4,7 @@
 // template over the constness of `value` serves both directions:
 //     template <Same<Slip> S, class Visit>
 //     void visit_members(S& slip, const Visit& visit) { visit(slip.displacement, slip.obstacle); }
+// A class with private members declares the function as a friend.
 #pragma once
 
 #include "base/types.h"
@@ -32,9 +33,26 @@ concept Same = std::same_as<std::remove_const_t<S>, T>;
 template <class T>
 concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
+/// A vector of numbers in a register (see base/machine/simd.h) is copied byte by byte too.
+template <class T>
+concept PlainVector = !std::is_class_v<T> && !std::is_array_v<T> && !std::is_pointer_v<T> && requires(T & lanes) {
+  lanes[0];
+};
+
 /// An array of Eigen.
 template <class T>
 concept EigenArray = std::derived_from<T, Eigen::PlainObjectBase<T>>;
+
+/// A list whose size follows from what its owner was made of: bytes with another size are no values of it. Its entries are read in
+/// place, so that members which they do not list stay.
+template <class List>
+struct FixedSize {
+  List& list;
+};
+template <class List>
+[[nodiscard]] FixedSize<List> fixed_size(List& list) {
+  return {list};
+}
 
 /// Writes values to `sink(const void* data, std::size_t size)`. The count of a list stands before its entries. Equal values, bit by
 /// bit, give the same bytes, and others do not.
@@ -43,10 +61,8 @@ class BinaryWriter {
  public:
   explicit BinaryWriter(Sink sink) : sink_(std::move(sink)) {}
 
-  template <PlainNumber Number>
-  void write(const Number& number) {
-    sink_(&number, sizeof(number));
-  }
+  template <class Number>
+  requires(PlainNumber<Number> || PlainVector<Number>) void write(const Number& number) { sink_(&number, sizeof(number)); }
   void write(const std::string& text) {
     write(text.size());
     sink_(text.data(), text.size());
@@ -58,14 +74,26 @@ class BinaryWriter {
     sink_(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(typename Matrix::Scalar));
   }
   void write(const RigidTransform& pose) { sink_(pose.data(), sizeof(double) * static_cast<std::size_t>(pose.matrix().size())); }
-  template <class Entry>
-  void write(const std::vector<Entry>& entries) {
+  void write(const Box3& box) {
+    write(box.min());
+    write(box.max());
+  }
+  template <class Entry, class Allocator>
+  void write(const std::vector<Entry, Allocator>& entries) {
     write(entries.size());
     if constexpr (PlainNumber<Entry>) {
       sink_(entries.data(), entries.size() * sizeof(Entry));
     } else {
       for (const Entry& entry : entries) write(entry);
     }
+  }
+  template <class List>
+  void write(const FixedSize<List>& fixed) {
+    write(fixed.list);
+  }
+  template <class Entry, std::size_t n>
+  void write(const Entry (&entries)[n]) {
+    for (const Entry& entry : entries) write(entry);
   }
   template <class Entry, std::size_t n>
   void write(const std::array<Entry, n>& entries) {
@@ -93,12 +121,18 @@ class BinaryWriter {
   Sink sink_;
 };
 
+/// Appends to a text.
+struct ByteSink {
+  std::string& bytes;
+  void operator()(const void* data, std::size_t size) const { bytes.append(static_cast<const char*>(data), size); }
+};
+using ByteWriter = BinaryWriter<ByteSink>;
+
 /// The bytes of a value.
 template <class Value>
 [[nodiscard]] std::string to_bytes(const Value& value) {
   std::string bytes;
-  BinaryWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); });
-  writer.write(value);
+  ByteWriter(ByteSink{bytes}).write(value);
   return bytes;
 }
 
@@ -118,10 +152,8 @@ class BinaryReader {
   /// The number of bytes that are not read yet.
   [[nodiscard]] std::size_t remaining() const { return bytes_.size(); }
 
-  template <PlainNumber Number>
-  void read(Number& number) {
-    copy(&number, sizeof(number));
-  }
+  template <class Number>
+  requires(PlainNumber<Number> || PlainVector<Number>) void read(Number& number) { copy(&number, sizeof(number)); }
   void read(bool& flag) {
     char byte = 0;
     copy(&byte, 1);
@@ -146,8 +178,21 @@ class BinaryReader {
     copy(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(typename Matrix::Scalar));
   }
   void read(RigidTransform& pose) { copy(pose.data(), sizeof(double) * static_cast<std::size_t>(pose.matrix().size())); }
-  template <class Entry>
-  void read(std::vector<Entry>& entries) {
+  void read(Box3& box) {
+    read(box.min());
+    read(box.max());
+  }
+  template <class List>
+  void read(FixedSize<List>& fixed) {
+    if (read_count(1) != fixed.list.size()) throw BytesError();
+    for (auto& entry : fixed.list) read(entry);
+  }
+  template <class Entry, std::size_t n>
+  void read(Entry (&entries)[n]) {
+    for (Entry& entry : entries) read(entry);
+  }
+  template <class Entry, class Allocator>
+  void read(std::vector<Entry, Allocator>& entries) {
     entries.clear();
     if constexpr (PlainNumber<Entry>) {
       entries.resize(read_count(sizeof(Entry)));
@@ -180,7 +225,7 @@ class BinaryReader {
   }
   template <class Struct>
   requires(std::is_class_v<Struct> && !EigenArray<Struct>) void read(Struct& value) {
-    visit_members(value, [this](auto&... members) { (this->read(members), ...); });
+    visit_members(value, [this](auto&&... members) { (this->read(members), ...); });
   }
 
  private:

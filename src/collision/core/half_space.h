@@ -1,6 +1,7 @@
 // Half-spaces, and the projection of a point onto their intersection.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/types.h"
 
 #include <optional>
@@ -14,6 +15,11 @@ struct HalfSpace {
   Vector3 normal = Vector3::Zero();
   double offset = 0.0;  ///< [m]
 };
+
+template <Same<HalfSpace> S, class Visit>
+void visit_members(S& h, const Visit& visit) {
+  visit(h.normal, h.offset);
+}
 
 /// Whether p is in all half-spaces, apart from the rounding of coordinates as large as those of p and the offsets.
 [[nodiscard]] bool is_feasible(std::span<const HalfSpace> half_spaces, const Vector3& p);

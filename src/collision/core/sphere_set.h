@@ -1,6 +1,7 @@
 // Spheres in SIMD lanes, one for each particle of a patch: finds the particles outside of their spheres.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/machine/simd.h"
 #include "base/types.h"
 
@@ -34,6 +35,15 @@ class SphereSet {
     Vector3x4 centre{};
     Double4 radius{};
   };
+
+  template <Same<Block> S, class Visit>
+  friend void visit_members(S& b, const Visit& visit) {
+    visit(b.centre.x, b.centre.y, b.centre.z, b.radius);
+  }
+  template <Same<SphereSet> S, class Visit>
+  friend void visit_members(S& s, const Visit& visit) {
+    visit(fixed_size(s.blocks_));
+  }
 
   [[nodiscard]] const Block& block(Index sphere) const { return blocks_[static_cast<std::size_t>(sphere) / kSimdWidth]; }
   [[nodiscard]] static int lane(Index sphere) { return sphere % kSimdWidth; }

@@ -66,6 +66,15 @@ class ElementBvh {
     float margin;
   };
 
+  template <Same<Node> S, class Visit>
+  friend void visit_members(S& n, const Visit& visit) {
+    visit(n.bounds);
+  }
+  template <Same<ElementBvh> S, class Visit>
+  friend void visit_members(S& t, const Visit& visit) {
+    visit(fixed_size(t.leaves_), fixed_size(t.nodes_));
+  }
+
   void add_leaf(const std::vector<Index>& order, std::size_t begin, std::size_t end);
   Index add_bodies(std::size_t begin, std::size_t end);
   Index add_node(Index begin, Index end, Index body);

@@ -88,6 +88,16 @@ struct alignas(64) ElementBvhLeaf {
   [[nodiscard]] bool any_marked() const;
 };
 
+template <Same<KineticAabb> S, class Visit>
+void visit_members(S& b, const Visit& visit) {
+  visit(b.min, b.max, b.slowest, b.fastest);
+}
+/// Without the marks, which each search makes anew, and the elements, which never change.
+template <Same<ElementBvhLeaf> S, class Visit>
+void visit_members(S& l, const Visit& visit) {
+  visit(l.min, l.max, l.slowest, l.fastest, l.bounds, l.corner, l.motion, l.radius, l.particle, l.flat, l.is_triangle);
+}
+
 /// Positions of the corners of a leaf's elements, now and at the end of the interval.
 struct alignas(64) LeafCorners {
   Float8 now[3][3];  ///< by corner and axis

@@ -5,6 +5,7 @@
 // corners are in their spheres cannot cross themselves (normal-cone test).
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/types.h"
 #include "collision/surface/surface_topology.h"
 
@@ -40,6 +41,12 @@ class VertexBounds {
   void advance() { center_ += motion_; }
 
  private:
+  template <Same<VertexBounds> S, class Visit>
+  friend void visit_members(S& b, const Visit& visit) {
+    visit(b.center_, b.motion_);
+    if (b.center_.cols() != b.count() || b.motion_.cols() != b.count()) throw BytesError();
+  }
+
   std::vector<double> radius_;
   Points center_;
   Points motion_;

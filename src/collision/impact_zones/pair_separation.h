@@ -67,6 +67,11 @@ class PairSeparation {
   void append_closest_contacts(const Points& before, std::vector<Contact>& contacts);
 
  private:
+  template <Same<PairSeparation> S, class Visit>
+  friend void visit_members(S& p, const Visit& visit) {
+    visit(p.list_, p.rotated_);
+  }
+
   [[nodiscard]] std::span<const DivisionPlanes::Bound> bounds_of(Index particle) const;
   [[nodiscard]] Index body_at(Index particle) const;
 

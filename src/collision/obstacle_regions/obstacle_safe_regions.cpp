@@ -257,6 +257,37 @@ void ObstacleSafeRegions::roll_back(const PermittedCrossings& permitted) {
   set_permitted(permitted);
 }
 
+void ObstacleSafeRegions::save(ByteWriter& to) const {
+  for (const Patch& patch : patches_) {
+    to.write(patch.known);
+    to.write(patch.box);
+    to.write(patch.is_at_rest);
+    to.write(patch.regions.size());
+    for (const PatchSafeRegions& regions : patch.regions) {
+      to.write(regions.obstacle());
+      to.write(regions);
+    }
+  }
+}
+
+void ObstacleSafeRegions::load(BinaryReader& from) {
+  for (Patch& patch : patches_) {
+    std::size_t count = 0;
+    from.read(patch.known);
+    from.read(patch.box);
+    from.read(patch.is_at_rest);
+    from.read(count);
+    if (count > permitted_.size()) throw BytesError();
+    patch.regions.clear();
+    for (std::size_t r = 0; r < count; ++r) {
+      Index obstacle = 0;
+      from.read(obstacle);
+      if (obstacle < 0 || at(obstacle) >= permitted_.size()) throw BytesError();
+      from.read(patch.regions.emplace_back(obstacle, patch.topology));
+    }
+  }
+}
+
 void ObstacleSafeRegions::append_permitted(Index p, const PatchSafeRegions& regions, const Points& from,
                                            PermittedCrossings& permitted) const {
   const Index k = regions.obstacle();

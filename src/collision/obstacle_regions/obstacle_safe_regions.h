@@ -33,6 +33,11 @@ class ObstacleSafeRegions {
   /// Discards all regions and restores the permitted crossings. Call it after the state was rolled back.
   void roll_back(const PermittedCrossings& permitted);
 
+  /// Writes the regions and what was found with them.
+  void save(ByteWriter& to) const;
+  /// Call it after roll_back(). Throws BytesError if this was not written for the same surface and obstacles.
+  void load(BinaryReader& from);
+
   /// Permits crossings of elements that an obstacle crosses and a pin pulls through it, until they are free again: their corners
   /// have no regions and no contacts with that obstacle. Requires update() for paths that start at `from`.
   void permit_crossings(const Points& from);

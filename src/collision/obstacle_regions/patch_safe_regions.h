@@ -1,6 +1,7 @@
 // The safe regions of one patch's elements before one obstacle, in the obstacle's frame, cached from step to step.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "collision/core/sphere_set.h"
 #include "collision/obstacle_regions/patch_paths.h"
 #include "collision/safe_regions/safe_region.h"
@@ -46,6 +47,15 @@ class ClosestPointTracker {
     std::array<Vector3, 3> corners;  ///< at the last search
     double travelled = 0.0;          ///< sum of displacements since the last search on the whole surface [m]
   };
+
+  template <Same<Record> S, class Visit>
+  friend void visit_members(S& r, const Visit& visit) {
+    visit(r.corners, r.travelled);
+  }
+  template <Same<ClosestPointTracker> S, class Visit>
+  friend void visit_members(S& t, const Visit& visit) {
+    visit(fixed_size(t.records_));
+  }
 
   std::vector<Record> records_;  ///< by element
 };
@@ -122,6 +132,17 @@ class PatchSafeRegions {
     bool near = false;                ///< whether one of its elements may touch
     bool broken = false;              ///< whether one of its elements is crossed
   };
+
+  template <Same<Slot> S, class Visit>
+  friend void visit_members(S& s, const Visit& visit) {
+    visit(s.box, s.planes, s.near, s.broken);
+  }
+  /// What stays from step to step.
+  template <Same<PatchSafeRegions> S, class Visit>
+  friend void visit_members(S& r, const Visit& visit) {
+    visit(fixed_size(r.regions_), fixed_size(r.made_around_), r.closest_points_, fixed_size(r.slots_), fixed_size(r.memories_),
+          r.inner_spheres_, r.empty_spheres_, r.near_elements_, r.any_crossed_);
+  }
 
   void move_with_surface(const ObstacleShape& shape, const PatchTopology& topology, const RegionDemand& demand);
   void mark_leaving(const PatchTopology& topology, const PatchPaths& paths);

@@ -1,6 +1,7 @@
 // Contact stencils: two convex features of the collision mesh that may touch.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/types.h"
 #include "collision/core/contact.h"
 
@@ -33,6 +34,11 @@ struct ContactStencil {
     return std::any_of(particles.begin(), particles.begin() + count(), predicate);
   }
 };
+
+template <Same<ContactStencil> S, class Visit>
+void visit_members(S& s, const Visit& visit) {
+  visit(s.particles, s.first_count, s.second_count, s.normal);
+}
 
 /// The particles' columns of `points`, 3 x n. Entries beyond the stencil's count are not set.
 [[nodiscard]] inline ContactStencil::PerParticle<Vector3> corners_at(const ContactStencil& stencil, const Points& points) {

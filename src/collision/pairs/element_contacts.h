@@ -21,6 +21,11 @@ struct ContactCandidate {
   int skip_steps = 0;               ///< steps that may skip the candidate, because its sides are far apart
 };
 
+template <Same<ContactCandidate> S, class Visit>
+void visit_members(S& c, const Visit& visit) {
+  visit(c.stencil, c.elements, c.edge, c.gap, c.reach, c.skip_steps);
+}
+
 /// Appends a contact for each candidate that comes within its reach between `before` and `after` [m], 3 x n, and whose closest
 /// points face each other. A vertex beside a face, with another face right below it, makes none: it would be pushed aside. Contacts
 /// have the order of their candidates. Candidates that are far apart note how many steps may skip them.

@@ -41,6 +41,12 @@ class NeighbourList {
   [[nodiscard]] const SurfaceTopology& topology() const { return topology_; }
 
  private:
+  /// What stays from step to step.
+  template <Same<NeighbourList> S, class Visit>
+  friend void visit_members(S& l, const Visit& visit) {
+    visit(l.feature_edges_, l.tree_, l.spheres_, l.pairs_, l.candidates_, fixed_size(l.flat_), l.age_, l.horizon_, l.renewed_);
+  }
+
   [[nodiscard]] double best_horizon(const Points& before, const Points& after) const;
   [[nodiscard]] std::vector<Index> find_leaving(const Points& ends, double time) const;
   void renew(const std::vector<Index>& leaving, const Points& before, const Points& ends);

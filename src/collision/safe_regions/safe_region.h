@@ -3,6 +3,7 @@
 // triangle bound it.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "collision/core/half_space.h"
 #include "geometry/queries/closest_pair.h"
 
@@ -52,6 +53,15 @@ struct SafeRegion {
   double loss = 0.0;                                       ///< by how much each side has shrunk since the region was built [m]
   Vector3 triangle_weights = Vector3::Zero();              ///< of the triangle's corners at `point`; their sum is 1
 };
+
+template <Same<SafeRegion> S, class Visit>
+void visit_members(S& r, const Visit& visit) {
+  visit(r.plane_count);
+  if (r.plane_count < 0 || r.plane_count > SafeRegion::kMostPlanes) throw BytesError();
+  for (int k = 0; k < r.plane_count; ++k) visit(r.planes[static_cast<std::size_t>(k)]);
+  visit(r.box, r.free_radius, r.broken, r.clear, r.distance, r.point, r.normal, r.weights, r.triangle, r.features, r.time, r.drift,
+        r.loss, r.triangle_weights);
+}
 
 /// The box, smaller by `margin` [m] >= 0 on each side; empty if opposite sides pass each other.
 [[nodiscard]] Box3 shrunk(const Box3& box, double margin);

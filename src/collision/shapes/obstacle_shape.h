@@ -2,6 +2,7 @@
 // leaves) and primitives (exact signed distances).
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/types.h"
 #include "collision/safe_regions/safe_region.h"
 #include "collision/shapes/obstacle.h"
@@ -31,6 +32,11 @@ struct SurfaceMemory {
   Vector3 query_point = Vector3::Zero();  ///< [m]
   double clear = 0.0;                     ///< lower bound of the distance between surface and `query_point` [m]
 };
+
+template <Same<SurfaceMemory> S, class Visit>
+void visit_members(S& m, const Visit& visit) {
+  visit(m.triangle, m.query_point, m.clear);
+}
 
 /// An element that moved with an obstacle.
 struct MovedElement {

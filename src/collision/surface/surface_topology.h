@@ -2,6 +2,7 @@
 // feature edges, the boundaries and creases. Only feature edges need edge-edge contacts; elsewhere vertex-face contacts are enough.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "collision/surface/collision_surface.h"
 
 #include <array>
@@ -98,6 +99,11 @@ class FeatureEdges {
 
  private:
   [[nodiscard]] bool is_bent(Index edge, const Points& positions) const;
+
+  template <Same<FeatureEdges> S, class Visit>
+  friend void visit_members(S& f, const Visit& visit) {
+    visit(fixed_size(f.sharp_));
+  }
 
   const CollisionSurface& surface_;
   const SurfaceTopology& features_;

@@ -77,6 +77,19 @@ void StepTruncation::roll_back(const PermittedCrossings& permitted) {
   if (implementation_->pairs) implementation_->pairs->forget();
 }
 
+void StepTruncation::save(ByteWriter& to) const {
+  implementation_->regions.save(to);
+  to.write(implementation_->pairs);
+}
+
+void StepTruncation::load(BinaryReader& from) {
+  implementation_->regions.load(from);
+  bool has_pairs = false;
+  from.read(has_pairs);
+  if (has_pairs != implementation_->pairs.has_value()) throw BytesError();
+  if (has_pairs) from.read(*implementation_->pairs);
+}
+
 const std::vector<Contact>& StepTruncation::contacts(const ObstacleFrame& obstacles, const Points& before, const Points& after) {
   implementation_->contacts.clear();
   implementation_->regions.find_contacts({obstacles, before, after}, implementation_->contacts);

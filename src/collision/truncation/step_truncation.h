@@ -5,6 +5,7 @@
 // compare the CCD filter of IPC, Li 2020). Between elements, division planes replace the regions.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "collision/core/contact.h"
 #include "collision/obstacle_regions/permitted_crossing.h"
 #include "collision/obstacles/obstacle_frame.h"
@@ -46,6 +47,12 @@ class StepTruncation {
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const;
   /// Discards cached regions and restores the permitted crossings. Call it after the state was rolled back.
   void roll_back(const PermittedCrossings& permitted);
+
+  /// What is kept from step to step, apart from the permitted crossings.
+  void save(ByteWriter& to) const;
+  /// Call it after roll_back(). Throws BytesError if this was not written for the same surface and obstacles; call roll_back()
+  /// again then.
+  void load(BinaryReader& from);
 
   /// The contacts of the step: of particles with obstacles (see ObstacleFrame::contacts), of obstacles with the inside of edges and
   /// faces, and of the network's elements with each other. The same order for any number of threads. Requires begin_step() with the

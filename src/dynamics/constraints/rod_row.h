@@ -1,6 +1,7 @@
 // A rod as solvers of constraints see it.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/types.h"
 
 #include <array>
@@ -28,5 +29,11 @@ struct RodRow {
     return sum;
   }
 };
+
+template <Same<RodRow> S, class Visit>
+void visit_members(S& r, const Visit& visit) {
+  visit(r.particles, r.weights, r.count, r.anchor, r.length, r.tolerance);
+  if (r.count > r.particles.size()) throw BytesError();
+}
 
 }  // namespace sprung

@@ -57,6 +57,8 @@ class ContactProjection {
   /// See StepTruncation.
   [[nodiscard]] const PermittedCrossings& permitted_crossings() const { return truncation_.permitted_crossings(); }
   void roll_back(const PermittedCrossings& permitted) { truncation_.roll_back(permitted); }
+  void save(ByteWriter& to) const { truncation_.save(to); }
+  void load(BinaryReader& from) { truncation_.load(from); }
 
   /// One pass; see ContactSolver.
   double project(Points& positions) { return solver_.project(positions); }

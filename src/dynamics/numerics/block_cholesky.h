@@ -1,6 +1,7 @@
 // A direct solver for sparse symmetric matrices of 3 x 3 blocks.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/machine/huge_pages.h"
 #include "dynamics/numerics/block_matrix.h"
 #include "dynamics/numerics/front_layout.h"
@@ -28,6 +29,12 @@ class BlockCholesky {
   void solve(const Points& right, Points& solution);
 
  private:
+  /// The factor.
+  template <Same<BlockCholesky> S, class Visit>
+  friend void visit_members(S& c, const Visit& visit) {
+    visit(c.scale_, fixed_size(c.panels_), fixed_size(c.inverse_));
+  }
+
   using Vector = Eigen::Matrix<Number, 3, 1>;
   using Front = FrontLayout::Front;
 

@@ -138,15 +138,14 @@ struct Steering {
 /// Do not edit x and v alone: Verlet moves by x - x_previous, and friction, rest and Verlet's start refer to positions too. Change
 /// all of x, v and x_previous together: x_previous = x - v dt.
 struct SimulationState {
-  std::int64_t step = 0;          ///< number of completed steps
-  std::int64_t frame = 0;         ///< number of completed frames
-  int step_in_frame = 0;          ///< number of completed steps of the current frame
-  int steps_per_frame = 1;        ///< number of equal steps of a frame; it may change at the end of a frame
-  int substeps = 1;               ///< number of equal substeps of the current step
-  int substep = 0;                ///< number of completed substeps of the current step
-  double step_length = 0.0;       ///< of the simulator that made it [s]
-  std::size_t integrator = 0;     ///< of that simulator: number in IntegratorSettings
-  std::int64_t caches_since = 0;  ///< the number of steps before the simulator cleared its caches of contact and limit last
+  std::int64_t step = 0;       ///< number of completed steps
+  std::int64_t frame = 0;      ///< number of completed frames
+  int step_in_frame = 0;       ///< number of completed steps of the current frame
+  int steps_per_frame = 1;     ///< number of equal steps of a frame; it may change at the end of a frame
+  int substeps = 1;            ///< number of equal substeps of the current step
+  int substep = 0;             ///< number of completed substeps of the current step
+  double step_length = 0.0;    ///< of the simulator that made it [s]
+  std::size_t integrator = 0;  ///< of that simulator: number in IntegratorSettings
   PlannerMemory planner{};
   Points x;           ///< positions [m], 3 x n
   Points v;           ///< velocities [m/s], 3 x n
@@ -184,14 +183,6 @@ struct SimulationState {
 [[nodiscard]] inline double steps_done(const SimulationState& state) {
   return static_cast<double>(whole_steps(state)) + static_cast<double>(state.substep) / state.substeps;
 }
-
-/// Caches of contact and limit are cleared at the end of the first frame that is so many steps after their last clearing. A run
-/// that resumes repeats up to so many steps. Clearing more often disturbs what lies still: after every 64 steps, a limp cloth at
-/// rest on a mesh moved by 0.2 mm and did not fall asleep.
-inline constexpr std::int64_t kStepsOfCaches = 4096;
-
-/// Whether a simulator that gets this state goes on as the one that has it, bit by bit: its caches were cleared at this step.
-[[nodiscard]] inline bool is_resumable(const SimulationState& state) { return state.caches_since == state.step; }
 
 /// Counts a completed step.
 inline void count_step(SimulationState& state) {

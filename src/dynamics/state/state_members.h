@@ -93,9 +93,9 @@ void visit_members(S& r, const Visit& visit) {
 }
 template <Same<SimulationState> S, class Visit>
 void visit_members(S& s, const Visit& visit) {
-  visit(s.step, s.frame, s.step_in_frame, s.steps_per_frame, s.substeps, s.substep, s.step_length, s.integrator, s.caches_since,
-        s.planner, s.x, s.v, s.x_previous, s.activity, s.springs, s.steering, s.contact, s.rest, s.energy, s.limit, s.grips,
-        s.links, s.impulses, s.last_impulses, s.reactions, s.added_forces, s.added_constraints);
+  visit(s.step, s.frame, s.step_in_frame, s.steps_per_frame, s.substeps, s.substep, s.step_length, s.integrator, s.planner, s.x,
+        s.v, s.x_previous, s.activity, s.springs, s.steering, s.contact, s.rest, s.energy, s.limit, s.grips, s.links, s.impulses,
+        s.last_impulses, s.reactions, s.added_forces, s.added_constraints);
 }
 
 }  // namespace sprung

@@ -178,6 +178,14 @@ bool StretchLimit::may_follow_deformation() const {
   return !follows_deformation() && follows_deformation(std::vector<StretchHandover>(network_.bodies.size(), {.solved_since = 0}));
 }
 
+void StretchLimit::save_solves(ByteWriter& to) const {
+  if (newton_) newton_->save(to);
+}
+
+void StretchLimit::load_solves(BinaryReader& from) const {
+  if (newton_) newton_->load(from);
+}
+
 void StretchLimit::forget_solves() const {
   if (newton_) newton_->forget();
 }

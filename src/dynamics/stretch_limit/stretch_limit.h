@@ -1,6 +1,7 @@
 // Projection-based limits on how far springs stretch or shrink (Provot 1995; Jakobsen 2001; Mueller et al. 2007).
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/types.h"
 #include "dynamics/state/simulation_state.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
@@ -60,6 +61,8 @@ class StretchLimit {
 
   /// See StretchNewton::forget().
   void forget_solves() const;
+  void save_solves(ByteWriter& to) const;
+  void load_solves(BinaryReader& from) const;
 
   /// The largest relative excess over the limits.
   [[nodiscard]] double excess(const Points& positions) const;

@@ -122,6 +122,34 @@ void ComponentNewton::forget() {
   if (solver_) solver_->forget();
 }
 
+void ComponentNewton::save(ByteWriter& to) const {
+  to.write(last_iterations_);
+  to.write(balanced_energy_);
+  to.write(balanced_);
+  to.write(balanced_target_);
+  to.write(farthest_squared_);
+  to.write(extent_);
+  to.write(solver_ != nullptr);
+  if (solver_) solver_->save(to);
+}
+
+void ComponentNewton::load(BinaryReader& from) {
+  from.read(last_iterations_);
+  from.read(balanced_energy_);
+  from.read(balanced_);
+  from.read(balanced_target_);
+  from.read(farthest_squared_);
+  from.read(extent_);
+  const auto count = static_cast<Index>(component_.points.size());
+  const bool rests = balanced_energy_ != kUnknown;
+  if (rests && (balanced_.cols() != count || balanced_target_.cols() != count)) throw BytesError();
+  bool has_solver = false;
+  from.read(has_solver);
+  if (!has_solver) return;
+  if (!solver_) solver_ = make_system_solver(component_);
+  solver_->load(from);
+}
+
 void ComponentNewton::set_rods(std::span<const RodRow> rows) {
   rows_ = rows;
   energy_.set_rods(rows);

@@ -25,6 +25,8 @@ class ComponentNewton final : public ComponentSolver {
   std::optional<int> solve(const Points& before, Points& positions, double steady_displacement) override;
 
   void forget() override;
+  void save(ByteWriter& to) const override;
+  void load(BinaryReader& from) override;
 
   /// Sets the rods of the next solve, by number. Keeps a reference to them. Required if the component has rods.
   void set_rods(std::span<const RodRow> rows);

@@ -1,6 +1,7 @@
 // The interface of solvers that enforce the limit of one component.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "base/types.h"
 
 #include <optional>
@@ -26,6 +27,10 @@ class ComponentSolver {
 
   /// Discards what former solves left behind, such as a factor: the next solve is that of a new solver.
   virtual void forget() = 0;
+
+  /// Writes what forget() discards, and reads it back. load() throws BytesError if it is of another component.
+  virtual void save(ByteWriter& to) const = 0;
+  virtual void load(BinaryReader& from) = 0;
 
   /// Largest relative deformation in the last solve() [1]: the largest displacement of a point by forces minus the common
   /// displacement, divided by the component's extent. For a body that swings about its pins this is the angle of the step.

@@ -88,6 +88,23 @@ void PcgSolver::forget() {
   for (Attempt& attempt : attempts_) attempt.bearable = std::numeric_limits<double>::infinity();
 }
 
+void PcgSolver::save(ByteWriter& to) const {
+  to.write(kept_);
+  if (kept_ == Kept::rough) to.write(rough_);
+  if (kept_ == Kept::exact) to.write(*exact_);
+  for (const Attempt& attempt : attempts_) to.write(attempt.bearable);
+  to.write(last_factor_failed_);
+}
+
+void PcgSolver::load(BinaryReader& from) {
+  from.read(kept_);
+  if (kept_ == Kept::exact && !exact_) exact_ = std::make_unique<BlockCholesky<double>>(matrix_);
+  if (kept_ == Kept::rough) from.read(rough_);
+  if (kept_ == Kept::exact) from.read(*exact_);
+  for (Attempt& attempt : attempts_) from.read(attempt.bearable);
+  from.read(last_factor_failed_);
+}
+
 std::optional<double> PcgSolver::solve_as_last(const StretchSystem& system, Points& step) {
   // A system that changes this fast mostly does so the next time too.
   if (std::exchange(last_factor_failed_, false)) return std::nullopt;

@@ -23,6 +23,8 @@ class PcgSolver final : public StretchSystemSolver {
   double solve(const StretchSystem& system, Points& step) override;
   void solve_again(const StretchSystem& system, Points& step) override;
   void forget() override;
+  void save(ByteWriter& to) const override;
+  void load(BinaryReader& from) override;
 
  private:
   enum class Kept : std::uint8_t { nothing, rough, exact };

@@ -131,6 +131,18 @@ void StretchNewton::forget() {
   for (const SolvedComponent& component : components_) component.solver->forget();
 }
 
+void StretchNewton::save(ByteWriter& to) const {
+  to.write(joined_);
+  for (const SolvedComponent& component : components_) component.solver->save(to);
+}
+
+void StretchNewton::load(BinaryReader& from) {
+  std::vector<RodRow> rods;
+  from.read(rods);
+  join(rods);
+  for (const SolvedComponent& component : components_) component.solver->load(from);
+}
+
 double StretchNewton::deformation() const {
   double largest = 0.0;
   for (const SolvedComponent& component : components_) largest = std::max(largest, component.solver->deformation());

@@ -1,6 +1,7 @@
 // The stretch limit by global solves.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "dynamics/constraints/rod_row.h"
 #include "dynamics/state/simulation_state.h"
 #include "dynamics/tethers/stretch_limit_settings.h"
@@ -49,6 +50,10 @@ class StretchNewton {
   /// Discards what former solves left behind: the next solve depends on its arguments alone. Call it after the state was rolled
   /// back.
   void forget();
+
+  /// Writes what forget() discards, and reads it back. load() throws BytesError if it is of other components; call forget() then.
+  void save(ByteWriter& to) const;
+  void load(BinaryReader& from);
 
   /// Whether all limited springs of a body are solved for from the start.
   [[nodiscard]] bool solves(const Body& body) const;

@@ -1,6 +1,7 @@
 // The linear system of a Newton iteration on a component, and the interface of its solvers.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "dynamics/numerics/symmetric_matrix3.h"
 #include "dynamics/stretch_newton/stretch_component.h"
 
@@ -35,6 +36,10 @@ class StretchSystemSolver {
 
   /// Discards factors of former systems. Default: does nothing, for a solver that keeps none.
   virtual void forget() {}
+
+  /// Writes these factors, and reads them back. load() throws BytesError if they are of another component. Default: does nothing.
+  virtual void save(ByteWriter& /*to*/) const {}
+  virtual void load(BinaryReader& /*from*/) {}
 };
 
 /// TreeSolver for trees, otherwise PcgSolver. Keeps a reference to the component.

@@ -21,6 +21,8 @@ class TwoLevelNewton final : public ComponentSolver {
 
   std::optional<int> solve(const Points& before, Points& positions, double steady_displacement) override;
   void forget() override { newton_.forget(); }
+  void save(ByteWriter& to) const override { newton_.save(to); }
+  void load(BinaryReader& from) override { newton_.load(from); }
   [[nodiscard]] double deformation() const override { return newton_.deformation(); }
 
  private:

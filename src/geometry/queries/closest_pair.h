@@ -1,6 +1,7 @@
 // Closest points of two simplices.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "geometry/queries/closest_point.h"
 
 #include <array>
@@ -41,6 +42,11 @@ struct FeaturePair {
   std::uint8_t of_simplex = 0;   ///< number of the corner or edge; 0 for the face
   std::uint8_t of_triangle = 0;  ///< number of the corner or edge; 0 for the face
 };
+
+template <Same<FeaturePair> S, class Visit>
+void visit_members(S& f, const Visit& visit) {
+  visit(f.kind, f.of_simplex, f.of_triangle);
+}
 
 /// The closest points of a simplex and a triangle.
 struct ClosestPair {

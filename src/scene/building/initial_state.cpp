@@ -31,7 +31,7 @@ struct FormerRun {
 };
 
 FormerRun former_run(Checkpoint checkpoint) {
-  SimulationState& state = checkpoint.last ? *checkpoint.last : checkpoint.state;
+  SimulationState& state = checkpoint.state;
   return {.bodies = std::move(checkpoint.bodies),
           .positions = std::move(state.x),
           .velocities = std::move(state.v),
@@ -72,7 +72,7 @@ FormerRun read_former_run(const fs::path& folder, bool& knows_springs) {
   const auto run = written_run(folder / kRunSummaryFile);
   if (fs::exists(folder / kCheckpointFile)) {
     Checkpoint checkpoint = read_checkpoint(folder / kCheckpointFile, kRemedy);
-    const std::int64_t frames = 1 + (checkpoint.last ? *checkpoint.last : checkpoint.state).frame;
+    const std::int64_t frames = 1 + checkpoint.state.frame;
     if (!run || frames >= run->frames_written) return former_run(std::move(checkpoint));
   }
   const RecordedRun record(folder);

@@ -1,6 +1,7 @@
 // The constraints of a step after forces have advanced the state: contact, the stretch limit, other constraints, and truncation.
 #pragma once
 
+#include "base/files/binary_archive.h"
 #include "dynamics/attachments/rods.h"
 #include "dynamics/constraints/constraint.h"
 #include "dynamics/contact/contact_projection.h"
@@ -28,6 +29,17 @@ class StepConstraints {
   void roll_back(const PermittedCrossings& permitted) {
     contacts_.roll_back(permitted);
     if (limit_) limit_->forget_solves();
+  }
+  /// Writes cached regions and factors.
+  void save(ByteWriter& to) const {
+    contacts_.save(to);
+    if (limit_) limit_->save_solves(to);
+  }
+  /// Reads them back, after roll_back(). Throws BytesError if they are of another network, limit or obstacles; call roll_back()
+  /// again then.
+  void load(BinaryReader& from) {
+    contacts_.load(from);
+    if (limit_) limit_->load_solves(from);
   }
   /// The largest one by gravity and wind [m/s^2].
   void set_steady_acceleration(double acceleration) { steady_acceleration_ = acceleration; }

@@ -65,9 +65,8 @@ class InitialState : public ::testing::Test {
     FrameRunner runner(loaded.simulator);
     for (int frame = 1; frame <= loaded.frames; ++frame) {
       output.write_frame(loaded.simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
-      output.note_checkpoint(loaded.simulator, "");
     }
-    output.write_last_checkpoint(loaded.simulator);
+    output.write_checkpoint_now(loaded.simulator, "");
     output.finish("done");
     former_ = loaded.simulator.state();
     for (const Body& body : loaded.simulator.network().bodies) former_first_[body.name] = body.first_particle;
