@@ -147,6 +147,15 @@ std::vector<std::string> describe_too_near(const SpringNetwork& network, const O
   return lines;
 }
 
+/// Bodies that begin as another simulation ended are not where the scene places them.
+std::string way_out(const SpringNetwork& network, const Points& positions) {
+  for (Index i = 0; i < network.particle_count(); ++i) {
+    if (!network.is_pinned(i) && positions.col(i) != network.positions.col(i))
+      return "move an obstacle by \"place\", which does not move bodies that begin as another run ended";
+  }
+  return "move one of them by \"place\"";
+}
+
 }  // namespace
 
 Start find_start(const SpringNetwork& network, const ObstacleFrame& obstacles, const ContactSettings& contact,
@@ -159,13 +168,13 @@ Start find_start(const SpringNetwork& network, const ObstacleFrame& obstacles, c
         push_out(network, obstacles, surface, positions, contact.response == ContactSettings::Response::projection);
     const StartIntersections left = find_all(obstacles, surface, contact, start);
     if (!left.empty()) {
-      const std::string remedy = "\"push_out\" found no free position: move one of them by \"place\"";
+      const std::string remedy = "\"push_out\" found no free position: " + way_out(network, positions);
       throw InputError(start_problems(left, network, obstacles, surface, start, remedy));
     }
     return {start, describe_lengthened(network, obstacles, surface, wanted, positions, start),
             describe_moved(network, positions, start)};
   }
-  std::string remedy = "move one of them by \"place\"";
+  std::string remedy = way_out(network, positions);
   if (push_out_helps(network, obstacles, surface, contact, positions, wanted)) remedy += ", or set contact.start to \"push_out\"";
   throw InputError(start_problems(wanted, network, obstacles, surface, positions, remedy));
 }

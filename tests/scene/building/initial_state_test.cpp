@@ -192,7 +192,8 @@ TEST_F(InitialState, AnOverlapIsTreatedAsAtAnyStart) {
   json scene = first_scene();
   scene["obstacles"]["box"] = {{"shape", {{"type", "box"}, {"size", {0.1, 0.1, 0.1}}}},
                                {"place", {{"position", {0.02, 0.2, 0.0}}}}};
-  EXPECT_THAT(problems(scene), Contains(HasSubstr("at the start")));
+  EXPECT_THAT(problems(scene), Contains(HasSubstr("move an obstacle by \"place\", which does not move bodies that begin as another "
+                                                  "run ended")));
   scene["contact"]["start"] = "push_out";
   EXPECT_THAT(problems(scene), IsEmpty());
 }
