@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/files/fingerprint.h"
+#include "base/format.h"
 #include "collision/shapes/obstacle.h"
 #include "simulation/model.h"
 #include "simulation/simulator.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -52,9 +54,33 @@ constexpr std::string_view kRemedy = "; run this scene into another folder, or r
 
 /// Results do not depend on where files lie, and frames that are there do not on how many follow.
 bool belongs_to_identity(const std::string& key) {
-  constexpr std::array<std::string_view, 4> kLeftOut{"duration", "file", "files", "initial_state"};
+  constexpr std::array<std::string_view, 5> kLeftOut{"duration", "file", "files", "initial_state", "$schema"};
   const std::string last = key.substr(key.rfind('.') + 1);
   return std::ranges::find(kLeftOut, last.substr(0, last.find('['))) == kLeftOut.end();
+}
+
+/// The text of a value: 30 and 30.0 are the same number.
+std::string text_of(const Json& value) {
+  if (value.is_number()) return format_number(value.get<double>());
+  if (!value.is_array()) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text(1, '[');
+  for (const Json& entry : value) {
+    if (text.size() > 1) text += ',';
+    text += text_of(entry);
+  }
+  text += ']';
+  return text;
+}
+
+std::string names_in_order(const auto& named) {
+  std::string text;
+  for (const auto& entry : named) {
+    if (!text.empty()) text += ", ";
+    text += '"';
+    text += entry.name;
+    text += '"';
+  }
+  return text;
 }
 
 void add_keys(const Json& json, const std::string& path, std::map<std::string, std::string>& keys) {
@@ -63,7 +89,7 @@ void add_keys(const Json& json, const std::string& path, std::map<std::string, s
   } else if (json.is_array() && !json.empty() && json.front().is_structured()) {
     for (std::size_t k = 0; k < json.size(); ++k) add_keys(json[k], path + "[" + std::to_string(k) + "]", keys);
   } else if (belongs_to_identity(path)) {
-    keys[path] = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    keys[path] = text_of(json);
   }
 }
 
@@ -78,6 +104,14 @@ std::uint64_t fingerprint_of_body(const Model& model, const Body& body) {
   const SpringNetwork& network = model.network();
   const SimulationState& start = model.initial_state();
   const Springs& springs = network.springs;
+  const PolygonFaces& faces = body.surface.faces;
+  std::vector<Index> held;  // by pins, and the number of particles of each pin
+  for (const Pin& pin : network.pins) {
+    const std::size_t count = held.size();
+    std::ranges::copy_if(pin.particles, std::back_inserter(held),
+                         [&](Index i) { return i >= body.first_particle && i < body.first_particle + body.particle_count; });
+    held.push_back(static_cast<Index>(held.size() - count));
+  }
   const auto of_body = [&](const auto& list) {
     return std::vector(list.begin() + body.first_spring, list.begin() + body.first_spring + body.spring_count);
   };
@@ -86,7 +120,8 @@ std::uint64_t fingerprint_of_body(const Model& model, const Body& body) {
                             Points(start.v.middleCols(body.first_particle, body.particle_count)),
                             Scalars(network.masses.segment(body.first_particle, body.particle_count)), of_body(springs.first),
                             of_body(springs.second), of_body(springs.rest_length), of_body(springs.stiffness),
-                            of_body(springs.damping));
+                            of_body(springs.damping), faces.corner_begin, faces.vertex, faces.texcoord, faces.texcoords,
+                            faces.groups, faces.group_begin, held);
 }
 
 void add(const std::string& difference, std::vector<std::string>& all) {
@@ -134,10 +169,13 @@ RunIdentity identity_of(const std::string& scene, const Simulator& simulator) {
   RunIdentity identity;
   if (!scene.empty()) add_keys(Json::parse(scene), "", identity.keys);
   const SpringNetwork& network = simulator.model()->network();
+  const std::vector<Obstacle>& obstacles = simulator.model()->obstacles().obstacles();
+  if (!scene.empty()) identity.keys["the order of bodies"] = names_in_order(network.bodies);
+  if (!scene.empty()) identity.keys["the order of obstacles"] = names_in_order(obstacles);
   for (const Body& body : network.bodies) {
     identity.fingerprints["body \"" + body.name + "\""] = fingerprint_of_body(*simulator.model(), body);
   }
-  for (const Obstacle& obstacle : simulator.model()->obstacles().obstacles()) {
+  for (const Obstacle& obstacle : obstacles) {
     identity.fingerprints["obstacle \"" + obstacle.name + "\""] = fingerprint_of_shape(obstacle);
   }
   return identity;
@@ -161,6 +199,7 @@ ResumePoint find_resume_point(const OutputFolder& folder, const RunFacts& facts,
     expect_same(folder, run_checkpoint(*point.checkpoint, folder).identity, now);
   } else if (!run->scene.empty()) {
     RunIdentity before{.keys = {}, .fingerprints = now.fingerprints};
+    for (const char* order : {"the order of bodies", "the order of obstacles"}) before.keys[order] = now.keys.at(order);
     add_keys(Json::parse(run->scene), "", before.keys);
     expect_same(folder, before, now);
   }

@@ -33,7 +33,7 @@ struct Simulator::Implementation {
   Implementation(std::shared_ptr<const Model> shared, Control chosen, const SimulationState& from)
       : model(std::move(shared)), control(std::move(chosen)), state(from) {
     scratch = std::make_unique<Scratch>(*model, control, state);
-    stepper().initialize(true);
+    stepper().initialize();
   }
   /// At the start.
   Implementation(SpringNetwork network, SimulatorSettings settings, std::vector<Obstacle> obstacles, const StartState& start)

@@ -44,8 +44,8 @@ class Stepper {
   /// ignored. Requires the same network and obstacles.
   void load_caches(std::string_view bytes);
 
-  /// Initializes the workspace from the state. `is_new`: it was just made, so that the integrator is initialized too.
-  void initialize(bool is_new);
+  /// Initializes the workspace from the state.
+  void initialize();
 
   /// Lets forces know gravity and wind. All particles wake in the next step.
   void follow_conditions();

@@ -183,13 +183,14 @@ void Stepper::keep_handovers() {
 
 void Stepper::restore(const SimulationState& former) {
   state_ = former;
-  initialize(scratch_.follow(model_, control_, state_));
+  scratch_.follow(model_, control_, state_);
+  initialize();
 }
 
-void Stepper::initialize(bool is_new) {
+void Stepper::initialize() {
   work().pin_paths.register_pins(state_);
   load();
-  if (is_new || is_start()) resume_integrator(dt());
+  resume_integrator(dt());
 }
 
 void Stepper::follow_conditions() {

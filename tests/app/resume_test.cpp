@@ -322,6 +322,66 @@ TEST_F(Resume, AnotherMeshOfTheSameNameIsNoticedAndAnotherPlaceIsNot) {
   EXPECT_EQ(moved.code, 0) << moved.err;
 }
 
+// Frames would show one mesh before the checkpoint and the other one after it.
+TEST_F(Resume, OtherFacesOfABodyAreNoticed) {
+  json scene = long_rope_scene();
+  scene["bodies"]["rope"]["shape"] = {{"type", "mesh"}, {"file", "sail.obj"}};
+  const std::string file = save(scene);
+  const std::string corners = "v 0 2 0\nv 1 2 0\nv 1 2 1\nv 0 2 1\n";
+  write_text(scratch_ / "sail.obj", corners + "f 1 2 3\nf 1 3 4\n");
+  ASSERT_EQ(resume(file, {"--frames", "3"}).code, 0);
+  write_text(scratch_ / "sail.obj", corners + "f 1 3 4\nf 1 2 3\n");
+  expect_refusal(resume(file), "the mesh, or the state in \"initial_state\", of body \"rope\" is another one");
+}
+
+TEST_F(Resume, TheOrderOfObstaclesIsPartOfAScene) {
+  json scene = long_rope_scene();
+  scene["obstacles"] = {{"left", {{"shape", {{"type", "sphere"}, {"radius", 0.1}}}}},
+                        {"right", {{"shape", {{"type", "sphere"}, {"radius", 0.1}}}, {"place", {{"position", {1, 0, 0}}}}}}};
+  const std::string file = save(scene);
+  ASSERT_EQ(resume(file, {"--frames", "3", "--format", "none"}).code, 0);
+  const json left = scene["obstacles"]["left"];
+  const json right = scene["obstacles"]["right"];
+  scene.erase("obstacles");
+  std::string text = scene.dump();
+  text.insert(1, R"("obstacles": {"right": )" + right.dump() + R"(, "left": )" + left.dump() + "},");
+  write_text(file, text);
+  expect_refusal(resume(file, {"--format", "none"}), "the order of obstacles is \"right\", \"left\", was \"left\", \"right\"");
+}
+
+TEST_F(Resume, NumbersThatAreWrittenOtherwiseAreTheSame) {
+  json scene = rope_scene();
+  scene["frame_rate"] = 30;
+  const std::string file = save(scene);
+  ASSERT_EQ(resume(file, {"--frames", "3"}).code, 0);
+  scene["frame_rate"] = 30.0;
+  scene["$schema"] = "scene.schema.json";
+  save(scene);
+  EXPECT_EQ(resume(file).code, 0);
+}
+
+// The links that act decide the pattern of implicit Euler's matrix.
+TEST_F(Resume, AnAttachmentThatEngagedGoesOnUnderImplicitEuler) {
+  const std::string file = save(json::parse(R"({
+    "duration": 0.5,
+    "integrator": { "type": "implicit_euler" },
+    "bodies": {
+      "rope": {
+        "shape": { "type": "rope", "from": [0, 1, 0], "to": [0.5, 1, 0], "particles": 6 }, "density": 0.1,
+        "springs": { "structural": { "stiffness": 200 } }, "pins": [ { "indices": [0] } ]
+      },
+      "tail": {
+        "shape": { "type": "rope", "from": [0.5, 0.9, 0], "to": [0.5, 0.6, 0], "particles": 4 }, "density": 0.1,
+        "springs": { "structural": { "stiffness": 200 } }
+      }
+    },
+    "attachments": [ { "first": { "body": "tail", "indices": [0] }, "second": { "body": "rope", "indices": [5] }, "from": 0.14 } ]
+  })"));
+  ASSERT_EQ(resume(file, {"--frames", "6"}).code, 0);
+  EXPECT_EQ(resume(file).code, 0);
+  expect_same(folder(), undisturbed(file));
+}
+
 TEST_F(Resume, DamagedCheckpointsAreRefusedAndNothingIsLost) {
   const std::string scene = save(long_rope_scene());
   run_until(3, scene);
