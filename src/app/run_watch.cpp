@@ -134,7 +134,7 @@ void RunWatch::note_inverted(const FrameDiagnostics& frame) {
 
 void RunWatch::note_stretch(const FrameDiagnostics& frame) {
   const auto& limit = simulator_.settings().stretch_limit;
-  if (!limit || frame.stretch_excess <= wanted_excess(*limit)) return;
+  if (!limit || frame.stretch_excess <= tolerated_excess(*limit, simulator_.settings().inner_substeps > 1)) return;
   ++memory_.missed.frames;
   if (frame.stretch_excess <= memory_.missed.largest) return;
   memory_.missed.largest = frame.stretch_excess;
@@ -191,8 +191,9 @@ void RunWatch::warn_of_missed_limit() {
   warn(
       fmt::format("the stretch limit was missed by more than {} % of a rest length in {}, at most by {} % in frame {} (column "
                   "stretch_excess in diagnostics.csv). {}",
-                  format_number(100.0 * wanted_excess(limit), 2), counted(memory_.missed.frames, "frame"),
-                  format_number(100.0 * memory_.missed.largest, 2), memory_.missed.worst_frame, remedy_for_stretch()));
+                  format_number(100.0 * tolerated_excess(limit, simulator_.settings().inner_substeps > 1), 2),
+                  counted(memory_.missed.frames, "frame"), format_number(100.0 * memory_.missed.largest, 2),
+                  memory_.missed.worst_frame, remedy_for_stretch()));
 }
 
 std::string RunWatch::remedy_for_stretch() const {

@@ -12,8 +12,11 @@ constexpr int kDigits = 6;
 }  // namespace
 
 std::string describe_steps(const LoadedScene& loaded) {
-  return fmt::format("{} of {} s ({})", counted(loaded.simulator.settings().steps_per_frame, "step"),
-                     format_number(loaded.simulator.settings().step, kDigits), loaded.scene.step ? "as given" : "automatic");
+  const SimulatorSettings& settings = loaded.simulator.settings();
+  const std::string inner =
+      settings.inner_substeps > 1 ? fmt::format(" with {}", counted(settings.inner_substeps, "inner substep")) : "";
+  return fmt::format("{} of {} s{} ({})", counted(settings.steps_per_frame, "step"), format_number(settings.step, kDigits), inner,
+                     loaded.scene.step ? "as given" : "automatic");
 }
 
 }  // namespace sprung

@@ -1,6 +1,8 @@
 #include "simulation/frame_cost.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 
 #include "base/error.h"
+#include "dynamics/stretch_limit/stretch_limit.h"
 #include "network/model/spring_network.h"
 
 #include <algorithm>
@@ -125,7 +127,7 @@ double pass_time(const Simulator& simulator) {
       springs += std::ranges::count(limit->kinds, network.springs.kind[s]) > 0 ? 1.0 : 0.0;
     }
   }
-  return kPass * limit->iterations * springs;
+  return kPass * passes_of(*limit, simulator.settings().inner_substeps > 1) * springs;
 }
 
 }  // namespace
@@ -142,7 +144,8 @@ FrameCost measure_frame_cost(Simulator& simulator, int steps_per_frame, int thre
   // A step in which all particles sleep has no substep.
   const double substeps = std::max(1.0, static_cast<double>(measured.substeps) / std::max(1, measured.complete));
   const double solves = (touches && implicit ? kImplicitContact : 1.0) * (newton ? kNewtonMotion : 1.0);
-  const double added = substeps * (contact_time(simulator, step / substeps) + passes);
+  const double contact_steps = std::max(1.0, substeps / simulator.settings().inner_substeps);
+  const double added = contact_steps * contact_time(simulator, step / contact_steps) + substeps * passes;
   const double free = median(measured.times);
   const double full = solves * free + added * (kSerialShare + (1.0 - kSerialShare) / threads);
   return {.steps = measured.complete,

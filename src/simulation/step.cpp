@@ -170,7 +170,7 @@ StepTrial Stepper::make_trial(const StepPlan& plan) {
   StepTrial trial{.plan = plan, .report = {}};
   for (const std::int64_t step = state_.step; state_.step == step && trial.report.max_infeasible < plan.abandon_at;) {
     if (control_.stops && control_.stops()) throw StoppedError();
-    trial.report += make_substep();
+    trial.report += make_substep(plan.inner);
   }
   note_contacts();
   set_substeps(planned);
@@ -221,18 +221,29 @@ double Stepper::rotation_in_step() const {
   return largest;
 }
 
-StepReport Stepper::make_substep() {
+/// The time [s] at the begin of a substep of the present step.
+double Stepper::time_of(int substep) const {
+  return (static_cast<double>(whole_steps(state_)) + static_cast<double>(substep) / state_.substeps) * settings().step;
+}
+
+/// `inner` substeps share their contacts.
+StepReport Stepper::make_substep(int inner) {
   const double t = time();
-  const double t_end =
-      (static_cast<double>(whole_steps(state_)) + static_cast<double>(state_.substep + 1) / state_.substeps) * settings().step;
+  const double t_end = time_of(state_.substep + 1);
   constraints().begin(state_);
   integrator().advance(state_, work().forces, dt());
-  const ObstacleFrame frame(obstacles(), t, t_end);
+  const ObstacleFrame part(obstacles(), t, t_end);
   move_pins(t_end);
-  work().energy_watch.note_obstacle(frame.max_displacement(state_.x) / dt(), state_.energy);
+  work().energy_watch.note_obstacle(part.max_displacement(state_.x) / dt(), state_.energy);
 
   StepReport report{.substeps = 1};
-  constraints().apply(frame, state_, work().forces, dt(), report);
+  if (inner == 1) {
+    constraints().apply(part, part, state_, work().forces, dt(), report);
+  } else {
+    const int first = state_.substep - state_.substep % inner;
+    const ObstacleFrame frame(obstacles(), time_of(first), time_of(first + inner));
+    constraints().apply(frame, part, state_, work().forces, dt(), report);
+  }
   if (work().attachments) work().attachments->note_substep(dt(), t_end, state_);
   if (++state_.substep == state_.substeps) {
     count_step(state_);

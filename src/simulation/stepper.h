@@ -84,7 +84,8 @@ class Stepper {
   void load();
   void prepare_step();
   [[nodiscard]] double rotation_in_step() const;
-  StepReport make_substep();
+  [[nodiscard]] double time_of(int substep) const;
+  StepReport make_substep(int inner);
   void set_substeps(int substeps);
   void substep_changed(double dt_before);
   void step_length_changed();

@@ -330,6 +330,12 @@ bool can_start(const BuiltScene& scene) {
   }
 }
 
+/// From numbers of their own, so that all else of a scene is as without them.
+void draw_inner_substeps(std::uint64_t seed, SimulatorSettings& settings) {
+  Random random(~seed);
+  if (may_have_inner_substeps(settings)) settings.inner_substeps = std::array{1, 2, 4, 8}[random.below(4)];
+}
+
 }  // namespace
 
 RandomScene random_scene(std::uint64_t seed, const IntegratorSettings& integrator) {
@@ -337,7 +343,9 @@ RandomScene random_scene(std::uint64_t seed, const IntegratorSettings& integrato
   const Index kind = random.below(kKinds);
   for (;;) {
     std::optional<RandomScene> made = draw(kind, integrator, random);
-    if (made && can_start(made->scene)) return std::move(*made);
+    if (!made || !can_start(made->scene)) continue;
+    draw_inner_substeps(seed, made->scene.settings);
+    return std::move(*made);
   }
 }
 

@@ -122,7 +122,10 @@ BuiltScene load_scenario(const std::string& name, const std::vector<std::string>
 
 BuiltScene load_stiff_scenario(const std::string& name, double step_factor) {
   BuiltScene built = load_scenario(name, {}, step_factor);
-  if (step_factor > 1.0) built.settings.integrator = ImplicitEulerSettings{};
+  if (step_factor > 1.0) {
+    built.settings.integrator = ImplicitEulerSettings{};
+    built.settings.inner_substeps = 1;
+  }
   return built;
 }
 

@@ -12,14 +12,27 @@ using testing::kGravity;
 using testing::one_particle;
 using testing::run;
 
+/// The integrators, then those that may have inner substeps with four of them.
+std::vector<SimulatorSettings> all_settings() {
+  std::vector<SimulatorSettings> all;
+  for (const IntegratorSettings& integrator : all_integrators()) all.push_back({.integrator = integrator});
+  for (const IntegratorSettings& integrator : all_integrators()) {
+    const SimulatorSettings settings{.integrator = integrator, .stretch_limit = StretchLimitSettings{}, .inner_substeps = 4};
+    if (may_have_inner_substeps(settings)) all.push_back(settings);
+  }
+  return all;
+}
+
 class ContactSolver : public ::testing::TestWithParam<std::size_t> {
  protected:
   [[nodiscard]] SimulatorSettings settings(double step) const {
-    return {.step = step, .integrator = all_integrators()[GetParam()]};
+    SimulatorSettings settings = all_settings()[GetParam()];
+    settings.step = step;
+    return settings;
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Integrators, ContactSolver, ::testing::Range(std::size_t{0}, all_integrators().size()));
+INSTANTIATE_TEST_SUITE_P(Integrators, ContactSolver, ::testing::Range(std::size_t{0}, all_settings().size()));
 
 TEST_P(ContactSolver, AParticleComesToRestAtItsThickness) {
   Simulator simulator(one_particle({0.0, 0.3, 0.0}, {.thickness = 0.01}), settings(1e-3), {ground({.thickness = 0.002})});
@@ -173,6 +186,7 @@ TEST_P(ContactSolver, ContactWorksAtThicknessZero) {
 TEST_P(ContactSolver, APenaltySupportsTheWeightAtItsStaticDepth) {
   SimulatorSettings chosen = settings(1e-4);
   chosen.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1000.0, .damping = 5.0};
+  chosen.inner_substeps = 1;
   Simulator simulator(one_particle({0.0, 0.02, 0.0}, {.thickness = 0.01}), chosen, {ground()});
   run(simulator, 1.0);
   // k (h - y) = m g. With c / m = 50 1/s, e^-25 of the motion remains.

@@ -30,13 +30,31 @@ ContactProjection::ContactProjection(const SpringNetwork& network, const Obstacl
     : solver_(network, obstacles),
       truncation_(obstacles, contact_surface(network), network.positions, margin_of(network, obstacles.obstacles())) {}
 
-void ContactProjection::find(const ObstacleFrame& frame, const StepMotion& motion) {
+void ContactProjection::detect(const ObstacleFrame& frame, const StepMotion& motion) {
   truncation_.begin_step(frame, motion.before, motion.advanced);
-  solver_.start(frame, truncation_.contacts(frame, motion.before, motion.advanced), motion);
+  contacts_ = &truncation_.contacts(frame, motion.before, motion.advanced);
 }
 
-void ContactProjection::find_again(const ObstacleFrame& frame, const StepMotion& motion, const Points& positions) {
-  solver_.renew(truncation_.renewed_contacts(frame, motion.before, positions), motion);
+// Contacts are those at the end of the step. Within it, their planes move with their obstacles.
+void ContactProjection::begin_part(const ObstacleFrame& frame, const ObstacleFrame& part, const StepMotion& motion, double ended,
+                                   double share) {
+  if (share == 1.0 || !frame.set().moves()) return solver_.start(part, *contacts_, motion);
+  std::vector<Contact> moved = *contacts_;
+  for (Contact& contact : moved) {
+    if (contact.obstacle == kNone) continue;
+    const RigidTransform back = part.after(contact.obstacle) * frame.into_after(contact.obstacle);
+    contact.point = back * Vector3(contact.point - (1.0 - ended) * contact.drift);
+    contact.normal = back.linear() * contact.normal;
+    contact.drift *= share;
+  }
+  solver_.start(part, moved, motion);
+}
+
+void ContactProjection::find_again(const ObstacleFrame& frame, const StepMotion& motion, const StepMotion& part, double share,
+                                   const Points& positions) {
+  FreshContacts fresh = truncation_.renewed_contacts(frame, motion.before, positions);
+  for (Contact& contact : fresh.contacts) contact.drift *= share;
+  solver_.renew(fresh, part);
 }
 
 ContactProjection::PushOut ContactProjection::push_out(Points& positions, int max_passes) {
@@ -49,10 +67,10 @@ ContactProjection::PushOut ContactProjection::push_out(Points& positions, int ma
   return done;
 }
 
-void ContactProjection::truncate(const ObstacleFrame& frame, const StepMotion& motion, Points& positions,
+void ContactProjection::truncate(const ObstacleFrame& frame, const StepMotion& motion, const StepMotion& part, Points& positions,
                                  const StepTruncation::Relax& relax) {
   added_.clear();
-  TruncationResult result = truncation_.bodies_can_collide() ? truncate_bodies(frame, motion, positions, relax)
+  TruncationResult result = truncation_.bodies_can_collide() ? truncate_bodies(frame, motion, part, positions, relax)
                                                              : truncation_.truncate(frame, motion.before, positions, relax);
   moved_with_obstacles_ = std::move(result.moved_with_obstacles);
   truncated_ = result.truncated;
@@ -72,11 +90,11 @@ void ContactProjection::limit_speed_of_moved(const StepMotion& motion, Simulatio
 // Truncation stops each of two bodies without regard to their masses: a cube that hits a light cloth would stop in mid-air, and a
 // cube that rests on it would be thrown up. The contacts that truncation found are therefore solved before it is repeated. `relax`
 // keeps state of its own, so it is called only once the bodies are apart.
-TruncationResult ContactProjection::truncate_bodies(const ObstacleFrame& frame, const StepMotion& motion, Points& positions,
-                                                    const StepTruncation::Relax& relax) {
+TruncationResult ContactProjection::truncate_bodies(const ObstacleFrame& frame, const StepMotion& motion, const StepMotion& part,
+                                                    Points& positions, const StepTruncation::Relax& relax) {
   Points solved = positions;
   TruncationResult result = truncation_.truncate(frame, motion.before, positions);
-  for (int round = 0; round < kBodyRounds && add_body_contacts(result.body_contacts, motion); ++round) {
+  for (int round = 0; round < kBodyRounds && add_body_contacts(result.body_contacts, part); ++round) {
     if (!push_out(solved).moved()) break;
     positions = solved;
     result = truncation_.truncate(frame, motion.before, positions);

@@ -44,12 +44,24 @@ class ContactProjection {
 
   // `frame` has the obstacles in the interval of the step.
 
-  /// Detects the contacts of a step.
-  void find(const ObstacleFrame& frame, const StepMotion& motion);
+  /// Detects the contacts of a step that has one part, and begins it.
+  void find(const ObstacleFrame& frame, const StepMotion& motion) {
+    detect(frame, motion);
+    begin_part(frame, frame, motion, 1.0, 1.0);
+  }
+
+  /// Detects the contacts of a step. Call begin_part() next.
+  void detect(const ObstacleFrame& frame, const StepMotion& motion);
+
+  /// Begins a part of the step of detect(): `motion` and `part` are those of the part, which ends when `ended` of the step has
+  /// passed and takes `share` of it.
+  void begin_part(const ObstacleFrame& frame, const ObstacleFrame& part, const StepMotion& motion, double ended, double share);
 
   /// Detects the contacts near truncated particles again, at the present positions [m]. Call it during the relaxation of
-  /// truncate(); requires that the positions lie in their safe regions. Accumulated pushes are kept.
-  void find_again(const ObstacleFrame& frame, const StepMotion& motion, const Points& positions);
+  /// truncate(); requires that the positions lie in their safe regions. Accumulated pushes are kept. `part` is the motion of the
+  /// last part, which takes `share` of the step.
+  void find_again(const ObstacleFrame& frame, const StepMotion& motion, const StepMotion& part, double share,
+                  const Points& positions);
 
   /// See StepTruncation. The inverse masses of the network have to match.
   void set_motions(ParticleMotions motions) { truncation_.set_motions(std::move(motions)); }
@@ -80,8 +92,13 @@ class ContactProjection {
 
   /// Clips positions [m] so that no element crosses a surface that it did not cross at the beginning of the step. If two bodies
   /// block each other, the contacts between them are solved first, which conserves momentum. `relax` may then move truncated
-  /// particles and their neighbours (see StepTruncation::truncate).
-  void truncate(const ObstacleFrame& frame, const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax = {});
+  /// particles and their neighbours (see StepTruncation::truncate). `part` is the motion of the last part.
+  void truncate(const ObstacleFrame& frame, const StepMotion& motion, const StepMotion& part, Points& positions,
+                const StepTruncation::Relax& relax);
+  /// The same for a step that has one part.
+  void truncate(const ObstacleFrame& frame, const StepMotion& motion, Points& positions, const StepTruncation::Relax& relax = {}) {
+    truncate(frame, motion, motion, positions, relax);
+  }
 
   /// Limits the speed of particles that truncation moved with obstacles to the speed that forces gave them: a lever would
   /// otherwise throw a particle far from the axis of a rotating obstacle. Contact accelerates the particles that touch it. Requires
@@ -93,13 +110,14 @@ class ContactProjection {
   [[nodiscard]] Index infeasible_count() const { return infeasible_; }
 
  private:
-  [[nodiscard]] TruncationResult truncate_bodies(const ObstacleFrame& frame, const StepMotion& motion, Points& positions,
-                                                 const StepTruncation::Relax& relax);
+  [[nodiscard]] TruncationResult truncate_bodies(const ObstacleFrame& frame, const StepMotion& motion, const StepMotion& part,
+                                                 Points& positions, const StepTruncation::Relax& relax);
   [[nodiscard]] bool add_body_contacts(const std::vector<Contact>& contacts, const StepMotion& motion);
 
   ContactSolver solver_;
   StepTruncation truncation_;
-  std::set<decltype(Contact::particles)> added_;  ///< stencils of the body contacts that truncation found in this step
+  const std::vector<Contact>* contacts_ = nullptr;  ///< of the step
+  std::set<decltype(Contact::particles)> added_;    ///< stencils of the body contacts that truncation found in this step
   std::vector<Index> moved_with_obstacles_;
   Index truncated_ = 0;
   Index infeasible_ = 0;

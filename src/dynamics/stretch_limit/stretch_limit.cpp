@@ -21,6 +21,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Without any tolerance a limit is never reached exactly: steps are chosen for this excess then.
 constexpr double kLeastExcess = 1.0e-3;
 
+// See tolerated_excess().
+constexpr double kInnerMargin = 3.0;
+
 // Springs that may shrink by no more than this fraction of the excess hardly let a surface neck.
 constexpr double kLeastPlay = 0.1;
 
@@ -65,6 +68,14 @@ bool prevents_shrinking(const StretchLimitSettings& settings) {
 
 double wanted_excess(const StretchLimitSettings& settings) {
   return std::max(0.5 * settings.max_stretch + settings.tolerance, kLeastExcess);
+}
+
+double tolerated_excess(const StretchLimitSettings& settings, bool has_inner_substeps) {
+  return (has_inner_substeps ? kInnerMargin : 1.0) * wanted_excess(settings);
+}
+
+int passes_of(const StretchLimitSettings& settings, bool has_inner_substeps) {
+  return has_inner_substeps ? std::max(1, settings.iterations / 2) : settings.iterations;
 }
 
 StretchLimit::StretchLimit(const SpringNetwork& network, const StretchLimitSettings& settings, const LimitUse& use)
@@ -160,7 +171,16 @@ double StretchLimit::suggested_step(double acceleration) const {
   for (const Body& body : network_.bodies) {
     if (newton_ && newton_->solves(body) && settings_.max_compression == 1.0) continue;
     const double gained = acceleration * gained_by(body);
-    if (gained > 0.0) smallest = std::min({smallest, std::sqrt(excess / gained), step_for_layers(network_, body, acceleration)});
+    if (gained > 0.0) smallest = std::min(smallest, std::sqrt(excess / gained));
+  }
+  return smallest;
+}
+
+double StretchLimit::step_for_layers(double acceleration) const {
+  double smallest = kInfinity;
+  for (const Body& body : network_.bodies) {
+    if (newton_ && newton_->solves(body) && settings_.max_compression == 1.0) continue;
+    smallest = std::min(smallest, sprung::step_for_layers(network_, body, acceleration));
   }
   return smallest;
 }

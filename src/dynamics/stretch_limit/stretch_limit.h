@@ -25,6 +25,13 @@ class StretchNewton;
 /// 0.001.
 [[nodiscard]] double wanted_excess(const StretchLimitSettings& settings);
 
+/// The excess above which the limit counts as missed: `wanted_excess`, or three times as much if contacts are found less often
+/// than passes are made. A hanging body bounces to half of that at first.
+[[nodiscard]] double tolerated_excess(const StretchLimitSettings& settings, bool has_inner_substeps);
+
+/// The largest number of passes of a step, or of an inner substep, which is short and adds little excess.
+[[nodiscard]] int passes_of(const StretchLimitSettings& settings, bool has_inner_substeps);
+
 class StretchLimit {
  public:
   /// Keeps a reference to the network. Springs of rest length 0 have no relative length and are left out.
@@ -81,10 +88,13 @@ class StretchLimit {
 
   /// The step [s] at which `iterations` passes a step keep the excess at about `wanted_excess` while each body hangs at rest under
   /// `acceleration` [m/s^2] by its pins or over an obstacle: in each step gravity adds g dt^2 per supported particle, which the
-  /// passes must distribute. It is larger with tethers to taut pins (see are_pins_taut). For bodies with self-contact and without
-  /// stiffness it is also at most the time in which falling layers move by half their thickness. Infinity if nothing is limited,
-  /// and for bodies that Newton's method solves, which need no small steps.
+  /// passes must distribute. It is larger with tethers to taut pins (see are_pins_taut). Infinity if nothing is limited, and for
+  /// bodies that Newton's method solves, which need no small steps.
   [[nodiscard]] double suggested_step(double acceleration) const;
+
+  /// The step [s] in which layers of falling bodies with self-contact and without stiffness move by half their thickness. Infinity
+  /// without such bodies.
+  [[nodiscard]] double step_for_layers(double acceleration) const;
 
   /// Whether steps may be refined where the limit is missed. The correction of an excess in a smaller step gives springs more
   /// speed. Surfaces whose springs neither stretch nor shrink, that are rigid within themselves and have tethers dissipate it;

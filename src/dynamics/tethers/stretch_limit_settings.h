@@ -22,7 +22,8 @@ struct StretchLimitSettings {
   double max_stretch = 0.02;                              ///< >= 0: lengths stay below d (1 + max_stretch)
   double max_compression = 1.0;                           ///< in [0, 1]: lengths stay above d (1 - max_compression)
   std::vector<SpringKind> kinds{SpringKind::structural};  ///< which springs are limited
-  int iterations = 32;                                ///< largest number of passes a step, >= 1; more where surfaces stop particles
+  int iterations =
+      32;  ///< largest number of passes a step, >= 1; half as many an inner substep; more where surfaces stop particles
   double tolerance = default_tolerance(max_stretch);  ///< passes end at this excess over the limit, relative to d, >= 0
   bool tethers = false;                               ///< particles stay within reach of their pins: see LongRangeAttachments
   Solver solver = Solver::automatic;

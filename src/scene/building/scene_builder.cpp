@@ -216,6 +216,7 @@ BuiltScene build_scene(const Scene& scene, const std::vector<std::filesystem::pa
   if (network) {
     StepChoice choice = choose_step(scene, *network, problems);
     built.settings.step = choice.step;
+    built.settings.inner_substeps = choice.inner_substeps;
     built.settings.max_substeps = choice.max_substeps;
     built.settings.steps_per_frame = choice.steps_per_frame;
     built.largest_stable_step = choice.largest_stable;

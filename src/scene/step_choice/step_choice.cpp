@@ -57,6 +57,14 @@ int substeps_for_passes(const Scene& scene, const std::optional<StretchLimit>& l
   return substeps;
 }
 
+/// With so many inner substeps, half of the limit's passes leave an excess that is 2.6 times as large as in steps that
+/// StretchLimit::suggested_step() suggests. Measured on cloths of 64, 128 and 256 squared that drape over a bunny: 99 in 100
+/// springs are at most 2.7 % too long with a limit of 2 %.
+int inner_substeps(double step, double suggested) {
+  constexpr double kLonger = 1.15;
+  return std::clamp(static_cast<int>(std::ceil(step / (kLonger * suggested))), 1, kMaxInnerSubsteps);
+}
+
 std::string advice_for_too_many_steps(const Scene& scene) {
   const bool gains_energy = std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator);
   return std::string(gains_energy ? "use \"symplectic_euler\", which does not gain energy at any step, " : "use ") +
@@ -111,12 +119,18 @@ StepChoice automatic_step(const Scene& scene, const SpringNetwork& network, cons
   if (scene.settings.stretch_limit) limit.emplace(network, *scene.settings.stretch_limit, use);
   const double without_passes = largest_auto_step(scene, use, limit, bounds);
   const double for_passes = limit ? limit->suggested_step(scene.settings.gravity.norm()) : std::numeric_limits<double>::infinity();
-  const double largest = std::min(without_passes, for_passes);
+  const double for_contact =
+      limit ? std::min(without_passes, limit->step_for_layers(scene.settings.gravity.norm())) : without_passes;
+  const bool has_inner = use.may_collide && for_passes < for_contact && may_have_inner_substeps(scene.settings) &&
+                         !damps_steps(scene.settings.integrator);
+  const double largest = has_inner ? for_contact : std::min(for_contact, for_passes);
   if (const auto steps = fewest_steps_per_frame(scene.frame_rate, largest)) {
-    const int substeps = substeps_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
+    const int substeps =
+        has_inner ? 1 : substeps_for_passes(scene, limit, *steps, *fewest_steps_per_frame(scene.frame_rate, without_passes));
     choice.steps_per_frame = whole_steps(*steps, substeps);
     choice.step = step_of(scene.frame_rate, choice.steps_per_frame);
-    choice.max_substeps = may_have_substeps(scene, limit) ? kAutoSubsteps : substeps;
+    choice.max_substeps = has_inner || may_have_substeps(scene, limit) ? kAutoSubsteps : substeps;
+    if (has_inner) choice.inner_substeps = inner_substeps(choice.step, for_passes);
     choice.warning = many_steps_warning(scene, network, choice, for_passes < without_passes);
   } else {
     problems.push_back({scene.file.string(), "step", "\"auto\"",
@@ -144,6 +158,7 @@ StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::ve
     StepChoice other = automatic_step(scene, later, bounds, problems);
     other.largest_stable = automatic.largest_stable;
     other.max_substeps = automatic.max_substeps = std::max(automatic.max_substeps, other.max_substeps);
+    other.inner_substeps = automatic.inner_substeps = std::max(automatic.inner_substeps, other.inner_substeps);
     if (other.steps_per_frame > automatic.steps_per_frame) automatic = std::move(other);
   }
   return automatic;

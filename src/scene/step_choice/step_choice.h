@@ -26,6 +26,7 @@ struct StepChoice {
   double step = 0.0;  ///< [s]
   int steps_per_frame = 1;
   int max_substeps = 1;                  ///< of a step that misses the stretch limit or turns too much
+  int inner_substeps = 1;                ///< see SimulatorSettings
   double largest_stable = 0.0;           ///< [s]; infinity if every step is stable
   std::optional<std::string> warning{};  ///< of very many steps per frame
 };
@@ -35,6 +36,8 @@ struct StepChoice {
 /// factor of e in the whole scene. Automatic steps may be divided into substeps if a stretch limit that allows it is missed, or if
 /// a body under a global solve turns too much in one step; not with Verlet's `damping`, which acts on each step. If bodies may be
 /// handed over from passes to a global solve, the step is one that suffices for the global solve, and passes use substeps of it.
+/// If passes alone need small steps and contact is possible, the step is one that suffices for contact, and passes use inner
+/// substeps of it.
 /// Adds a problem if the scene's step exceeds the largest stable one and `stability` is refuse, or if a frame would take too many
 /// steps. Warns of very many steps. An automatic step suffices for all pins that ever hold together.
 [[nodiscard]] StepChoice choose_step(const Scene& scene, const SpringNetwork& network, std::vector<Problem>& problems);

@@ -32,6 +32,7 @@ enum class StabilityCheck : std::uint8_t { refuse, warn };
 
 /// Upper bound of the number of substeps in a step.
 inline constexpr int kMaxSubsteps = 1 << 16;
+inline constexpr int kMaxInnerSubsteps = 64;
 
 struct SimulatorSettings {
   double step = 1.0e-3;  ///< dt [s]
@@ -50,6 +51,10 @@ struct SimulatorSettings {
   /// Maximum number of substeps in a step, in [1, kMaxSubsteps]; see StepPlanner. All of them are made while Gauss-Seidel passes
   /// solve a limit that may be handed over to a global solve.
   int max_substeps = 1;
+  /// Parts of each substep in which forces, the stretch limit and its contacts act, while contacts are found and paths are checked
+  /// once: in [1, kMaxInnerSubsteps]. More than 1 requires a stretch limit that passes enforce, contact by projection, and a scheme
+  /// other than implicit Euler.
+  int inner_substeps = 1;
   /// Whether particles at rest sleep; see RestDetector and Surroundings.
   bool sleep = true;
   /// Whether bodies that stand compressed, exactly in a line or plane, get a tiny push off it; see SymmetryBreaker.
@@ -61,5 +66,8 @@ struct SimulatorSettings {
   /// Whether the air acts on all bodies. It also acts on those that have a drag of their own: see Body::drag.
   [[nodiscard]] bool has_air() const { return air_drag > 0.0 || !air_surface.is_zero(); }
 };
+
+/// Whether inner_substeps may be more than 1.
+[[nodiscard]] bool may_have_inner_substeps(const SimulatorSettings& settings);
 
 }  // namespace sprung

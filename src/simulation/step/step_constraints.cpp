@@ -1,5 +1,6 @@
 #include "simulation/step/step_constraints.h"
 
+#include "dynamics/integrators/schemes.h"
 #include "simulation/step/step_check.h"
 
 #include <algorithm>
@@ -61,29 +62,45 @@ constexpr double kCorrected = 1.0e-6;
 
 StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, ContactProjection& contacts,
                                  Integrator& integrator, bool has_obstacles)
-    : settings_(settings), integrator_(integrator), contacts_(contacts) {
+    : network_(network), settings_(settings), integrator_(integrator), contacts_(contacts) {
   if (!settings.stretch_limit) return;
   limit_.emplace(network, *settings.stretch_limit, limit_use(network, settings, has_obstacles));
 }
 
 void StepConstraints::begin(const SimulationState& state) {
+  inner_number_ = state.substep % inner_;
   if (copies_positions()) before_ = state.x;
   if (!contacts_.can_collide()) return;
   v_before_ = state.v;
   slip_before_ = state.contact.slip;
+  if (inner_ > 1 && inner_number_ == 0) first_before_ = before_;
 }
 
-void StepConstraints::apply(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, double dt,
-                            StepReport& report) {
+void StepConstraints::apply(const ObstacleFrame& frame, const ObstacleFrame& part, SimulationState& state, const Forces& forces,
+                            double dt, StepReport& report) {
   if (!contacts_.can_collide() && !limit_ && constraints_.empty()) return;
-  for (const auto& constraint : constraints_) constraint->prepare(frame.end());
+  for (const auto& constraint : constraints_) constraint->prepare(part.end());
   if (contacts_.can_collide() || integrator_.needs_advanced()) advanced_ = state.x;
   dt_ = dt;
   recorder_ = ImpulseRecorder(state.impulses, dt);
-  project(frame, state, forces, report);
+  if (projects_contacts()) find_contacts(frame, part);
+  project(state, forces, report);
   report.stretch_excess = limit_ ? limit_->excess(state.x) : 0.0;
-  truncate(frame, state, forces, report);
+  end_substep(frame, state, forces, report);
   recorder_ = {};
+}
+
+/// In the first inner substep, finds contacts on the path that forces give particles in the whole contact step: that of a flight.
+void StepConstraints::find_contacts(const ObstacleFrame& frame, const ObstacleFrame& part) {
+  if (inner_number_ == 0) {
+    if (inner_ > 1) {
+      predicted_ = before_ + inner_ * (advanced_ - before_);
+      const Vector3 later = 0.5 * inner_ * (inner_ - 1) * dt_ * dt_ * settings_.gravity;
+      for_free_particles(network_, [&](Index i) { predicted_.col(i) += later; });
+    }
+    contacts_.detect(frame, contact_step());
+  }
+  contacts_.begin_part(frame, part, motion(), static_cast<double>(inner_number_ + 1) / inner_, 1.0 / inner_);
 }
 
 void StepConstraints::correct_positions(const ObstacleFrame& frame, SimulationState& state, double dt) {
@@ -116,8 +133,7 @@ void StepConstraints::correct_positions(const ObstacleFrame& frame, SimulationSt
   }
 }
 
-void StepConstraints::project(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report) {
-  if (projects_contacts()) contacts_.find(frame, motion());
+void StepConstraints::project(SimulationState& state, const Forces& forces, StepReport& report) {
   if (projects_contacts() && integrator_.responds_to_contact()) respond_to_contact(state, forces);
   make_passes(state, report);
 }
@@ -140,7 +156,7 @@ void StepConstraints::make_passes(SimulationState& state, StepReport& report) {
   const std::optional<int> solves = limit_ && global_limit_ ? solve_limit(state) : std::nullopt;
   if (limit_ && global_limit_) report.deformation = limit_->deformation();
   report.limit_solves = solves.value_or(0);
-  const int limit_passes = limit_ ? limit_->settings().iterations + (solves ? 1 : 0) : 0;  // the first after a solve only measures
+  const int limit_passes = limit_ ? passes_of_limit() + (solves ? 1 : 0) : 0;  // the first after a solve only measures
   const int passes = std::max(limit_passes, constraint_passes());
   if (projects) report.iterations = contacts_.push_out(state.x, kContactPasses - passes).passes;
   const int max_passes = constraints_.empty() ? passes : kPassesOfGrossViolation * passes;
@@ -181,7 +197,21 @@ void StepConstraints::respond_to_contact(SimulationState& state, const Forces& f
   }
 }
 
-void StepConstraints::truncate(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report) {
+void StepConstraints::end_substep(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report) {
+  if (is_last()) {
+    end_contact_step(frame, state, forces, report);
+  } else {
+    integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
+  }
+  if (!contacts_.can_collide()) return;
+  contacts_.settle_velocities(motion(), state, integrator_);
+  if (recorder_.on() && projects_contacts()) contacts_.record(motion(), recorder_);
+  contacts_.note_slip(motion(), state);
+}
+
+/// Truncates the path of the whole contact step and recovers velocities.
+void StepConstraints::end_contact_step(const ObstacleFrame& frame, SimulationState& state, const Forces& forces,
+                                       StepReport& report) {
   const bool can_collide = contacts_.can_collide();
   const bool responds = !limit_ && constraints_.empty() && integrator_.responds_to_contact() && projects_contacts();
   const int max_rounds = responds ? kTruncationResponses : max_relax_rounds();
@@ -192,16 +222,32 @@ void StepConstraints::truncate(const ObstacleFrame& frame, SimulationState& stat
     return responds ? respond_to_truncation(state, forces) : relax(frame, positions, report.stretch_excess, violation_before);
   };
   if (responds) responded_ = state.x;
-  if (can_collide) contacts_.truncate(frame, motion(), state.x, relax_again);
-  integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
+  if (inner_ == 1) {
+    if (can_collide) contacts_.truncate(frame, motion(), state.x, relax_again);
+    integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
+  } else {
+    Points truncated = state.x;
+    if (can_collide) contacts_.truncate(frame, contact_step(), motion(), truncated, relax_again);
+    integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
+    add_displacement(truncated, state);
+  }
   if (can_collide) contacts_.limit_speed_of_moved(motion(), state, integrator_);
-  if (can_collide) contacts_.settle_velocities(motion(), state, integrator_);
-  if (recorder_.on() && projects_contacts()) contacts_.record(motion(), recorder_);
-  if (can_collide) contacts_.note_slip(motion(), state);
   report.truncated = contacts_.truncated_count();
   report.infeasible = contacts_.infeasible_count();
   if (limit_ && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit_->excess(state.x);
 }
+
+/// A displacement that took the whole contact step: a velocity by the last inner substep would throw particles backwards.
+void StepConstraints::add_displacement(const Points& displaced, SimulationState& state) const {
+  for_free_particles(network_, [&](Index i) {
+    if (displaced.col(i) == state.x.col(i)) return;
+    state.v.col(i) += (displaced.col(i) - state.x.col(i)) / (inner_ * dt_);
+    state.x.col(i) = displaced.col(i);
+    integrator_.velocity_changed(state, i, dt_);
+  });
+}
+
+int StepConstraints::passes_of_limit() const { return passes_of(limit_->settings(), inner_ > 1); }
 
 int StepConstraints::max_relax_rounds() const {
   const int passes = std::max(limit_ ? limit_->settings().iterations : 0, constraint_passes());
@@ -221,7 +267,7 @@ bool StepConstraints::relax(const ObstacleFrame& frame, Points& positions, doubl
   };
   const bool stretched = limit_ && limit_->excess(positions) > permitted(limit_->settings());
   if (!stretched && violation(positions) <= std::max(1.0, violation_before)) return false;
-  if (projects_contacts()) contacts_.find_again(frame, motion(), positions);
+  if (projects_contacts()) contacts_.find_again(frame, contact_step(), motion(), 1.0 / inner_, positions);
   for (int pass = 0; pass < kRelaxPasses; ++pass) {
     if (projects_contacts()) contacts_.project(positions);
     sprung::project(constraints_, before_, positions, recorder_);

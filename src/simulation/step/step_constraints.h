@@ -20,7 +20,7 @@ class StepConstraints {
   StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, ContactProjection& contacts,
                   Integrator& integrator, bool has_obstacles);
 
-  /// Stores positions and velocities at the beginning of a step. Call it before forces and pins move the state.
+  /// Stores positions and velocities at the beginning of a substep. Call it before forces and pins move the state.
   void begin(const SimulationState& state);
 
   /// See StepTruncation.
@@ -45,7 +45,10 @@ class StepConstraints {
   void set_steady_acceleration(double acceleration) { steady_acceleration_ = acceleration; }
 
   /// Makes the substeps that follow as planned.
-  void follow(const StepPlan& plan) { global_limit_ = plan.global_limit; }
+  void follow(const StepPlan& plan) {
+    global_limit_ = plan.global_limit;
+    inner_ = plan.inner;
+  }
 
   /// Adds a constraint that passes restore in each step.
   void add(std::shared_ptr<Constraint> constraint) { constraints_.push_back(std::move(constraint)); }
@@ -56,10 +59,11 @@ class StepConstraints {
     rods_ = std::move(rods);
   }
 
-  /// Projects the advanced state onto contact, constraints and the stretch limit, truncates it, and recovers the velocities at the
-  /// end of the step of `dt` [s], in the interval of `frame`. Adds counts and the remaining stretch to the report. Requires
-  /// begin().
-  void apply(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, double dt, StepReport& report);
+  /// Projects the advanced state onto contact, constraints and the stretch limit, and recovers the velocities at the end of the
+  /// substep of `dt` [s], in the interval of `part`. Contacts are found in the first inner substep of a contact step, whose
+  /// interval is that of `frame`; the last one truncates. Adds counts and the remaining stretch to the report. Requires begin().
+  void apply(const ObstacleFrame& frame, const ObstacleFrame& part, SimulationState& state, const Forces& forces, double dt,
+             StepReport& report);
 
   /// Moves particles from rest onto the stretch limit and the constraints, as far as obstacles and other bodies permit. Velocities
   /// stay as they are. Call it at the start, and when a limit or constraint changed: a step would give particles the velocity of
@@ -78,19 +82,28 @@ class StepConstraints {
   [[nodiscard]] const ContactProjection& contacts() const { return contacts_; }
 
  private:
-  void project(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report);
+  void find_contacts(const ObstacleFrame& frame, const ObstacleFrame& part);
+  void project(SimulationState& state, const Forces& forces, StepReport& report);
   [[nodiscard]] std::optional<int> solve_limit(SimulationState& state);
   void make_passes(SimulationState& state, StepReport& report);
   void respond_to_contact(SimulationState& state, const Forces& forces);
-  void truncate(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report);
+  void end_substep(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report);
+  void end_contact_step(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report);
+  void add_displacement(const Points& displaced, SimulationState& state) const;
   [[nodiscard]] int max_relax_rounds() const;
+  [[nodiscard]] int passes_of_limit() const;
   [[nodiscard]] int constraint_passes() const;
   [[nodiscard]] bool relax(const ObstacleFrame& frame, Points& positions, double excess_before, double violation_before);
   [[nodiscard]] bool respond_to_truncation(SimulationState& state, const Forces& forces);
   [[nodiscard]] bool projects_contacts() const;
   [[nodiscard]] bool copies_positions() const { return contacts_.can_collide() || !integrator_.keeps_positions(); }
   [[nodiscard]] StepMotion motion() const { return {before_, v_before_, slip_before_, advanced_, dt_}; }
+  [[nodiscard]] StepMotion contact_step() const {
+    return inner_ > 1 ? StepMotion{first_before_, v_before_, slip_before_, predicted_, inner_ * dt_} : motion();
+  }
+  [[nodiscard]] bool is_last() const { return inner_number_ + 1 == inner_; }
 
+  const SpringNetwork& network_;
   const SimulatorSettings& settings_;
   double steady_acceleration_ = 0.0;
   Integrator& integrator_;
@@ -99,7 +112,13 @@ class StepConstraints {
   Constraints constraints_;
   std::shared_ptr<Rods> rods_;  ///< one of them; none without attachments
 
-  // State of the present step.
+  // State of the present contact step.
+  int inner_ = 1;         ///< number of its inner substeps
+  int inner_number_ = 0;  ///< of the present one
+  Points first_before_;   ///< positions at its beginning, if there are several
+  Points predicted_;      ///< where forces alone would end it, if there are several
+
+  // State of the present inner substep.
   Points before_;                      ///< positions at the beginning; for contact, or if the integrator does not keep them
   Points v_before_;                    ///< velocities at the beginning; for contact
   Slip slip_before_;                   ///< slip at the beginning; for contact

@@ -37,6 +37,9 @@ constexpr int kForgetting = 16;
 constexpr double kWorthwhile = 0.8;
 constexpr int kMostPatience = 1 << 20;  // steps
 
+/// More contact steps have fewer inner substeps, of about the same length.
+int divided(int inner, int factor) { return std::max(1, inner / factor); }
+
 bool may_repeat(Index infeasible, const SimulationState& begin) {
   const PlannerMemory& memory = begin.planner;
   return infeasible > 0 && (begin.step >= memory.retry_from || infeasible > memory.retry_infeasible);
@@ -51,26 +54,42 @@ bool is_worth_changing(const SolverTrial& trial, double excess, double excess_of
 StepPlanner::StepPlanner(const SpringNetwork& network, const SimulatorSettings& settings, const StretchLimit* limit)
     : network_(network),
       limit_(limit),
+      inner_substeps_(limit != nullptr ? settings.inner_substeps : 1),
       max_substeps_(limit != nullptr ? settings.max_substeps : 1),
       awaits_newton_(limit != nullptr && limit->may_follow_deformation()) {}
 
+/// Global solves need no small steps.
+int StepPlanner::inner(const SimulationState& state) const {
+  const bool solves = inner_substeps_ > 1 && limit_->follows_deformation(state.limit.handovers);
+  return solves ? 1 : inner_substeps_;
+}
+
+/// Those of the next step.
+int StepPlanner::contact_steps(const SimulationState& state) const { return std::max(1, state.substeps / inner(state)); }
+
 void StepPlanner::start(bool moves, SimulationState& state) const {
-  if (max_substeps_ == 1 || !(awaits_newton_ || (limit_->follows_deformation() && moves))) return;
-  state.substeps = max_substeps_;
+  state.substeps = inner(state);
+  const bool by_passes = awaits_newton_ && inner_substeps_ == 1;
+  if (max_substeps_ == 1 || !(by_passes || (limit_->follows_deformation() && moves))) return;
+  state.substeps *= max_substeps_;
   state.planner.reason = awaits_newton_ ? PlanReason::excess : PlanReason::deformation;
 }
 
 void StepPlanner::note_change(bool restrains, SimulationState& state) const {
-  state.substeps = restrains ? max_substeps_ : std::min(state.substeps, max_substeps_);
+  const int steps = restrains && inner_substeps_ == 1 ? max_substeps_ : std::min(contact_steps(state), max_substeps_);
+  state.substeps = steps * inner(state);
   if (restrains && max_substeps_ > 1) state.planner.reason = PlanReason::excess;
 }
 
 StepPlan StepPlanner::first(const SimulationState& begin, double rotation) const {
+  const int steps = contact_steps(begin);
   const int most = std::min(kRetryFactors.back(), kMaxSubsteps / begin.substeps);
-  const double needed = std::ceil(rotation / (kMaxRotation * begin.substeps));
+  const double needed = std::ceil(rotation / (kMaxRotation * steps));
   const int factor = static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(most)));
-  const PlanReason reason = begin.substeps > 1 ? begin.planner.reason : PlanReason::first;
-  return {.contact_steps = factor * begin.substeps, .reason = factor > 1 ? PlanReason::rotation : reason};
+  const PlanReason reason = begin.substeps > inner(begin) ? begin.planner.reason : PlanReason::first;
+  return {.contact_steps = factor * steps,
+          .inner = divided(inner(begin), factor),
+          .reason = factor > 1 ? PlanReason::rotation : reason};
 }
 
 std::optional<StepPlan> StepPlanner::next(std::span<const StepTrial> tried, const SimulationState& begin) const {
@@ -90,10 +109,12 @@ std::optional<StepPlan> StepPlanner::next(std::span<const StepTrial> tried, cons
 std::optional<StepPlan> StepPlanner::repetition(std::span<const StepTrial> tried, const SimulationState& begin) const {
   const Index infeasible = tried[best(tried)].report.max_infeasible;
   if (infeasible == 0 || !may_repeat(tried.front().report.max_infeasible, begin)) return std::nullopt;
+  const int steps = contact_steps(begin);
   for (const int factor : kRetryFactors) {
     if (begin.substeps > kMaxSubsteps / factor) break;
-    if (factor * begin.substeps <= tried.back().plan.contact_steps) continue;
-    return StepPlan{.contact_steps = factor * begin.substeps,
+    if (factor * steps <= tried.back().plan.contact_steps) continue;
+    return StepPlan{.contact_steps = factor * steps,
+                    .inner = divided(inner(begin), factor),
                     .global_limit = false,  // a global solve does not know contacts and moves particles far
                     .abandon_at = (infeasible + 1) / 2,
                     .reason = PlanReason::infeasible};
@@ -148,13 +169,15 @@ void StepPlanner::learn_of_trial(std::span<const StepTrial> tried, SimulationSta
 }
 
 void StepPlanner::choose_substeps(std::span<const StepTrial> tried, SimulationState& state) const {
-  if (max_substeps_ == 1) return;
-  if (limit_->follows_deformation(state.limit.handovers)) {
+  if (max_substeps_ == 1 && inner_substeps_ == 1) return;
+  if (max_substeps_ == 1) {
+    state.substeps = inner(state);
+  } else if (limit_->follows_deformation(state.limit.handovers)) {
     // Passes alone measure no deformation: then the first attempt tells it.
     const StepTrial& kept = tried[best(tried)];
     const StepTrial& measured = kept.plan.global_limit ? kept : tried.front();
     choose_by_deformation(measured.report.deformation * measured.plan.substeps(), state);
-  } else if (awaits_newton_) {
+  } else if (awaits_newton_ && inner_substeps_ == 1) {
     state.substeps = max_substeps_;  // which the solve did not need before the body came back
     state.planner.reason = PlanReason::excess;
   } else {
@@ -164,17 +187,19 @@ void StepPlanner::choose_substeps(std::span<const StepTrial> tried, SimulationSt
 
 void StepPlanner::choose_by_excess(double excess, SimulationState& state) const {
   const double bound = kMargin * wanted_excess(limit_->settings());
+  const int steps = contact_steps(state);
   PlannerMemory& memory = state.planner;
   if (excess > bound) {
     const int halvings = 1 + std::ilogb(excess / bound);
-    state.substeps = static_cast<int>(std::min(std::ldexp(state.substeps, halvings), static_cast<double>(max_substeps_)));
+    const double wanted = std::min(std::ldexp(steps, halvings), static_cast<double>(max_substeps_));
+    state.substeps = static_cast<int>(wanted) * inner_substeps_;
     memory.reason = PlanReason::excess;
     memory.calm_steps = 0;
     return;
   }
   memory.calm_steps = excess < kRoom * bound ? memory.calm_steps + 1 : 0;
-  if (memory.calm_steps < kCalmSteps || state.substeps == 1) return;
-  state.substeps /= 2;
+  if (memory.calm_steps < kCalmSteps || steps == 1) return;
+  state.substeps = steps / 2 * inner_substeps_;
   memory.calm_steps = 0;
 }
 
@@ -188,7 +213,7 @@ void StepPlanner::choose_by_deformation(double deformation, SimulationState& sta
 
 /// Counts for each eligible body the steps in a row that ended with more excess than wanted.
 void StepPlanner::count_missed(double excess, SimulationState& state) const {
-  const double wanted = wanted_excess(limit_->settings());
+  const double wanted = tolerated_excess(limit_->settings(), inner_substeps_ > 1);
   for (std::size_t b = 0; b < network_.bodies.size(); ++b) {
     if (!limit_->may_be_handed_over(b)) continue;
     StretchHandover& handover = state.limit.handovers[b];

@@ -20,7 +20,7 @@ struct SolverTrial {
 
 struct StepPlan {
   int contact_steps = 1;     ///< parts of the step for which contacts are found anew
-  int inner = 1;             ///< substeps of each, in which forces and the stretch limit act; 1 until inner substeps exist
+  int inner = 1;             ///< substeps of each, in which forces and the stretch limit act
   bool global_limit = true;  ///< whether global solves enforce the stretch limit where they do otherwise; or passes alone
   std::optional<SolverTrial> trial{};
   Index abandon_at = std::numeric_limits<Index>::max();  ///< infeasible particles in a substep that end the attempt
@@ -37,14 +37,16 @@ struct StepTrial {
   double body_excess = 0.0;  ///< excess over the stretch limit of the body whose solvers are compared, at the end
 };
 
-/// All that divides or repeats a step:
-/// - Excess: the length of the substeps is halved as soon as a step ends with more excess over the stretch limit than the bound,
-///   and doubled after eight steps in a row with less than a quarter of the bound. The excess of a swinging body grows with the
-///   length of the substep, the excess of a hanging body with its square.
+/// All that divides or repeats a step. It is divided into contact steps, and each of them into the inner substeps of the settings,
+/// or into one where global solves enforce all limits:
+/// - Excess: the length of the contact steps is halved as soon as a step ends with more excess over the stretch limit than the
+///   bound, and doubled after eight steps in a row with less than a quarter of the bound. The excess of a swinging body grows with
+///   the length of the substep, the excess of a hanging body with its square.
 /// - Deformation: global solves satisfy the limit at any step, but their projection damps motion in proportion to the deformation
 ///   in a substep. Each substep deforms or rotates a body by at most 1/70 (see StretchLimit::deformation).
-/// - Rotation: no obstacle or pin rotates by more than 45 degrees in a substep.
-/// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the substeps until there are none: a long
+/// - Rotation: no obstacle or pin rotates by more than 45 degrees in a contact step.
+/// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the contact steps until there are none: a
+/// long
 ///   step can miss an admissible position near a pin or before a fast obstacle. An attempt that does not halve the number
 ///   of infeasible particles is abandoned, because it could take hundreds of times longer. After a repetition without effect, no
 ///   step is repeated for a waiting time, which doubles each time and ends after enough feasible steps. A step with more infeasible
@@ -87,9 +89,13 @@ class StepPlanner {
   void choose_by_deformation(double deformation, SimulationState& state) const;
   void count_missed(double excess, SimulationState& state) const;
 
+  [[nodiscard]] int inner(const SimulationState& state) const;
+  [[nodiscard]] int contact_steps(const SimulationState& state) const;
+
   const SpringNetwork& network_;
   const StretchLimit* limit_;
-  int max_substeps_;    ///< that excess and deformation may ask for; 1 without a limit
+  int inner_substeps_;
+  int max_substeps_;    ///< contact steps that excess and deformation may ask for; 1 without a limit
   bool awaits_newton_;  ///< see StretchLimit::may_follow_deformation
 };
 

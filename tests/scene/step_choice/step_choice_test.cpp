@@ -300,12 +300,37 @@ TEST(StepChoice, AutoIsAFrameUnderAGlobalSolveWithoutContact) {
   EXPECT_EQ(built({second + R"(, "body_contact": false})"}).settings.steps_per_frame, 1);
 }
 
+// Contact of a cloth that falls on an obstacle does not need the small steps that passes need.
+TEST(StepChoice, AutoUsesInnerSubstepsForPassesWhereContactIsPossible) {
+  const auto built = [](int side, const std::vector<std::string>& changes = {}) {
+    const SceneFolder folder;
+    const std::string text = R"({"duration": 1, "frame_rate": 60, "stretch_limit": {"max_stretch": 0.02},
+        "obstacles": {"floor": {"shape": {"type": "half_space", "offset": -5}}},
+        "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [16, 16]}, "mass": 1,
+        "springs": {"structural": {"stiffness": 0}}}}})";
+    std::vector<std::string> all = changes;
+    all.push_back("bodies.cloth.shape.resolution=[" + std::to_string(side) + "," + std::to_string(side) + "]");
+    return build_scene(folder.read(text, all)).settings;
+  };
+  for (const int side : {64, 128}) {
+    EXPECT_EQ(built(side).steps_per_frame, 4) << "1/240 s, as without a limit";
+    // The step that passes suggest is inversely proportional to the square root of the load, which grows with the side.
+    const double suggested = built(side, {"obstacles={}", "stretch_limit.solver=gauss_seidel"}).steps_per_frame;
+    EXPECT_NEAR(built(side).inner_substeps, suggested / 1.15 / 4, 1.0) << side;
+  }
+  EXPECT_GT(built(128).inner_substeps, built(64).inner_substeps);
+  EXPECT_EQ(built(64, {"obstacles={}"}).inner_substeps, 1) << "nothing to find";
+  EXPECT_EQ(built(64, {R"(integrator={"type": "implicit_euler"})"}).inner_substeps, 1);
+  EXPECT_EQ(built(64, {R"(integrator={"type": "verlet", "damping": 0.01})"}).inner_substeps, 1) << "damping acts on each step";
+  EXPECT_EQ(built(64, {"step=0.0005208333333333333"}).inner_substeps, 1) << "the step is given";
+}
+
 // Passes need the substeps. After a handover to the global solve, the whole step suffices.
 TEST(StepChoice, AutoUsesSubstepsForPassesThatMayBeReplaced) {
   const auto built = [](const std::vector<std::string>& changes) {
     const SceneFolder folder;
     const std::string text = R"({"duration": 1, "stretch_limit": {"solver": "auto", "iterations": 4},
-        "obstacles": {"floor": {"shape": {"type": "half_space", "offset": -5}}},
+        "integrator": {"type": "implicit_euler"}, "obstacles": {"floor": {"shape": {"type": "half_space", "offset": -5}}},
         "bodies": {"cloth": {"shape": {"type": "cloth", "size": [1, 1], "resolution": [16, 16]}, "mass": 1,
         "springs": {"structural": {"stiffness": 0}}, "pins": [{"at": "corner", "which": ["min_max", "max_max"]}]}}})";
     return build_scene(folder.read(text, changes));

@@ -221,5 +221,30 @@ TEST(Substeps, AnInvalidNumberOfSubstepsIsRefused) {
   }
 }
 
+TEST(InnerSubsteps, NeedALimitProjectionAndAnExplicitScheme) {
+  const auto refusal = [](const SimulatorSettings& settings) {
+    NetworkBuilder builder;
+    builder.add_particle(Vector3::Zero(), 1.0);
+    try {
+      const Simulator simulator(builder.build(), settings);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const SimulatorSettings four{.stretch_limit = StretchLimitSettings{}, .inner_substeps = 4};
+  EXPECT_EQ(refusal(four), "");
+  for (int k = 0; k < 3; ++k) {
+    SimulatorSettings other = four;
+    if (k == 0) other.stretch_limit.reset();
+    if (k == 1) other.integrator = ImplicitEulerSettings{};
+    if (k == 2) other.contact = {.response = ContactSettings::Response::penalty, .stiffness = 1.0};
+    EXPECT_THAT(refusal(other),
+                ::testing::HasSubstr("inner_substeps = 4: must be 1 without a stretch limit, with penalty contact and "
+                                     "with implicit Euler; leave it out"))
+        << k;
+  }
+}
+
 }  // namespace
 }  // namespace sprung
