@@ -52,7 +52,7 @@ class StateRules {
     require_setting("integrator", integrator_name(state_.integrator), integrator_name(settings.integrator.index()));
     require(state_.step_in_frame >= 0 && state_.step_in_frame < steps, "step_in_frame", state_.step_in_frame,
             "must be from 0 to one less than the steps of a frame");
-    const int most = settings.stretch_limit ? settings.max_substeps * settings.inner_substeps : 1;
+    const int most = (settings.stretch_limit ? settings.max_substeps : 1) * settings.inner_substeps;
     require(state_.substeps >= 1 && state_.substeps <= most, "substeps", state_.substeps,
             "must be from 1 to " + std::to_string(most) + ", as the settings say");
     require(state_.substep == 0, "substep", state_.substep, "must be 0, as between two steps");

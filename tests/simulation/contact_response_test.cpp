@@ -17,7 +17,7 @@ std::vector<SimulatorSettings> all_settings() {
   std::vector<SimulatorSettings> all;
   for (const IntegratorSettings& integrator : all_integrators()) all.push_back({.integrator = integrator});
   for (const IntegratorSettings& integrator : all_integrators()) {
-    const SimulatorSettings settings{.integrator = integrator, .stretch_limit = StretchLimitSettings{}, .inner_substeps = 4};
+    const SimulatorSettings settings{.integrator = integrator, .inner_substeps = 4};
     if (may_have_inner_substeps(settings)) all.push_back(settings);
   }
   return all;

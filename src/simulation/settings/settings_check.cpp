@@ -69,7 +69,7 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
   require_within("inner_substeps", settings.inner_substeps, 1.0, kMaxInnerSubsteps);
   if (settings.inner_substeps > 1 && !may_have_inner_substeps(settings)) {
     problems.add("inner_substeps", std::to_string(settings.inner_substeps),
-                 "must be 1 without a stretch limit, with penalty contact and with implicit Euler", "leave it out");
+                 "must be 1 with penalty contact and with implicit Euler", "leave it out");
   }
   require_within("contact.stiffness", settings.contact.stiffness, 0.0, kInfinity);
   require_within("contact.damping", settings.contact.damping, 0.0, kInfinity);
@@ -78,7 +78,7 @@ SimulatorSettings checked_settings(SimulatorSettings settings) {
 }
 
 bool may_have_inner_substeps(const SimulatorSettings& settings) {
-  return settings.stretch_limit && settings.contact.response == ContactSettings::Response::projection &&
+  return settings.contact.response == ContactSettings::Response::projection &&
          !std::holds_alternative<ImplicitEulerSettings>(settings.integrator);
 }
 

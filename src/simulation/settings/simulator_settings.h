@@ -52,8 +52,8 @@ struct SimulatorSettings {
   /// solve a limit that may be handed over to a global solve.
   int max_substeps = 1;
   /// Parts of each substep in which forces, the stretch limit and its contacts act, while contacts are found and paths are checked
-  /// once: in [1, kMaxInnerSubsteps]. More than 1 requires a stretch limit that passes enforce, contact by projection, and a scheme
-  /// other than implicit Euler.
+  /// once: in [1, kMaxInnerSubsteps]. More than 1 requires contact by projection and a scheme other than implicit Euler. Where
+  /// global solves enforce all limits, there is one.
   int inner_substeps = 1;
   /// Whether particles at rest sleep; see RestDetector and Surroundings.
   bool sleep = true;

@@ -54,13 +54,13 @@ bool is_worth_changing(const SolverTrial& trial, double excess, double excess_of
 StepPlanner::StepPlanner(const SpringNetwork& network, const SimulatorSettings& settings, const StretchLimit* limit)
     : network_(network),
       limit_(limit),
-      inner_substeps_(limit != nullptr ? settings.inner_substeps : 1),
+      inner_substeps_(settings.inner_substeps),
       max_substeps_(limit != nullptr ? settings.max_substeps : 1),
       awaits_newton_(limit != nullptr && limit->may_follow_deformation()) {}
 
 /// Global solves need no small steps.
 int StepPlanner::inner(const SimulationState& state) const {
-  const bool solves = inner_substeps_ > 1 && limit_->follows_deformation(state.limit.handovers);
+  const bool solves = limit_ != nullptr && inner_substeps_ > 1 && limit_->follows_deformation(state.limit.handovers);
   return solves ? 1 : inner_substeps_;
 }
 
