@@ -21,7 +21,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Without any tolerance a limit is never reached exactly: steps are chosen for this excess then.
 constexpr double kLeastExcess = 1.0e-3;
 
-// See tolerated_excess().
+// A hanging body bounces at first, to 1.5 times the wanted excess. A smaller step would remove the excess faster and increase the
+// bounce, so only a larger excess, which needs motion, asks for smaller steps.
 constexpr double kInnerMargin = 3.0;
 
 // Springs that may shrink by no more than this fraction of the excess hardly let a surface neck.

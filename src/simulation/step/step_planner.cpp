@@ -16,10 +16,6 @@ constexpr double kMaxRotation = 45.0;
 // Factors on the substeps of repeated steps, in this order. Rotation asks for no more than the last one.
 constexpr std::array<int, 3> kRetryFactors{4, 16, 64};
 
-// A hanging body bounces at first, to 1.5 times the wanted excess. A smaller step would remove the excess faster and increase the
-// bounce, so only a larger excess, which needs motion, halves the step.
-constexpr double kMargin = 3.0;
-
 // Twice the step gives two to four times the excess: the step is doubled below this fraction of the bound.
 constexpr double kRoom = 0.25;
 constexpr int kCalmSteps = 8;
@@ -186,7 +182,7 @@ void StepPlanner::choose_substeps(std::span<const StepTrial> tried, SimulationSt
 }
 
 void StepPlanner::choose_by_excess(double excess, SimulationState& state) const {
-  const double bound = kMargin * wanted_excess(limit_->settings());
+  const double bound = tolerated_excess(limit_->settings(), true);
   const int steps = contact_steps(state);
   PlannerMemory& memory = state.planner;
   if (excess > bound) {

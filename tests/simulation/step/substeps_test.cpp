@@ -1,6 +1,7 @@
 // What substeps do. Time and motion do not depend on their number and length.
 #include "base/error.h"
 #include "base/parallel.h"
+#include "collision/sample_meshes.h"
 #include "dynamics/forces/gravity_and_drag.h"
 #include "simulation/scenes.h"
 
@@ -9,9 +10,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 namespace sprung {
 namespace {
+
+using testing::cloth;
+using testing::ground;
+using testing::one_particle;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kRate = 60.0;
@@ -219,6 +225,55 @@ TEST(Substeps, AnInvalidNumberOfSubstepsIsRefused) {
       EXPECT_EQ(error.problems().front().key, "max_substeps");
     }
   }
+}
+
+// Within a contact step, a plate is where it is in each inner substep: it hits a particle at rest when it arrives.
+TEST(InnerSubsteps, APlateHitsWhenItArrives) {
+  const int inner = 8;
+  const double step = 1.0 / 240.0;
+  const double speed = 2.0;  // [m/s]
+  SimulatorSettings settings{.step = step, .gravity = Vector3::Zero(), .inner_substeps = inner};
+  Obstacle plate = ground();
+  plate.motion.keyframes = {{.time = 0.0}, {.time = 1.0, .position = {0.0, speed, 0.0}}};
+  const double thickness = 0.01;
+  const double hit = 6.5 / inner * step;  // [s]
+  Simulator simulator(one_particle({0.0, thickness + speed * hit, 0.0}, {.thickness = thickness, .restitution = 1.0}), settings,
+                      {plate});
+  simulator.step();
+  // It leaves with twice the speed of the plate, at the end of the inner substep in which they meet.
+  EXPECT_NEAR(simulator.state().v(1, 0), 2.0 * speed, 1e-9);
+  const double expected = thickness + speed * hit + 2.0 * speed * (step - hit);
+  EXPECT_NEAR(simulator.positions()(1, 0), expected, 2.0 * speed * step / inner);
+}
+
+// Truncation takes motion away. What it moved over a whole contact step is no motion of the last inner substep.
+TEST(InnerSubsteps, TruncationThrowsNothingBack) {
+  SimulatorSettings settings{.step = 1.0 / 240.0, .stretch_limit = StretchLimitSettings{.max_stretch = 0.02}, .inner_substeps = 8};
+  SpringNetwork network = cloth(17, 0.4, {.thickness = 0.001});
+  std::ranges::fill(network.springs.stiffness, 0.0);
+  std::ranges::fill(network.springs.damping, 0.0);
+  network.velocities.row(1).setConstant(-8.0);
+  TriangleMesh star = test::needles(12);
+  star.vertices *= 0.35;
+  Simulator simulator(network, settings,
+                      {{.name = "star", .geometry = MeshGeometry{std::make_shared<const TriangleMesh>(std::move(star))}}});
+  const auto energy = [&] {
+    double kinetic = 0.0;
+    for (Index i = 0; i < simulator.network().particle_count(); ++i) {
+      kinetic += 0.5 * simulator.network().masses[i] * simulator.state().v.col(i).squaredNorm();
+    }
+    return kinetic + simulator.gravity_energy();
+  };
+  const double start = energy();
+  Index truncated = 0;
+  double highest = 0.0;
+  for (int step = 0; step < 48; ++step) {
+    truncated += simulator.step().truncated;
+    highest = std::max(highest, energy());
+  }
+  EXPECT_GT(truncated, 0);
+  // Verlet's velocity is that of half a substep ago, so the energy of the start is off by m g v h / 2, g h / v = 0.06 % of it.
+  EXPECT_LE(highest, 1.001 * start);
 }
 
 TEST(InnerSubsteps, StayWhenTheLimitGoes) {
