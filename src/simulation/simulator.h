@@ -85,7 +85,7 @@ class Simulator {
   void restore(const Checkpoint& checkpoint);
 
   /// Writes the checkpoint into a file, which is on the disk when this returns. Throws FileError; a former file then stays. Costs
-  /// about 5 ms per megabyte, and the time of the disk; a cloth has 0.2 to 0.6 kB a particle, near a mesh up to 2.5 kB, and as much
+  /// about 5 ms per megabyte, and the time of the disk; a cloth has 0.2 to 0.6 kB a particle, near a mesh up to 2.5 kB, and more
   /// where Newton's method keeps a factor.
   void save(const std::filesystem::path& file) const;
 
