@@ -300,7 +300,7 @@ TEST(SimulatorChanges, ARefusedChangeChangesNothing) {
   });
   expect_refused("step", [](Simulator& simulator) { simulator.set_springs(0, SpringKind::structural, 1e9, 0.0); });
   expect_refused("springs.shear.damping", [](Simulator& simulator) { simulator.set_springs(0, SpringKind::shear, 1.0, -1.0); });
-  const auto with_attachment = [](Attachment attachment) {
+  const auto with_attachment = [](const Attachment& attachment) {
     return [attachment](Simulator& simulator) {
       SpringNetwork network = simulator.network();
       network.attachments.push_back(attachment);

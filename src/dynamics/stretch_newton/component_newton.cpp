@@ -19,6 +19,12 @@ constexpr int kMostHalvings = 10;
 // From this iteration on, links that ever overshot stay stiff. Earlier that would only slow convergence.
 constexpr int kFreeIterations = 5;
 
+// The fewest points of a tree that is solved coarsely first.
+constexpr Index kLeastNested = 32;
+
+// A coarse tree leaves out at least one in so many points; each with a branch of its own, none can be left out.
+constexpr std::size_t kWorthLeaving = 4;
+
 // A step that rotates links lengthens them, which the linear system does not know. Corrections continue while each removes half of
 // the energy, and are kept if half of the forecast is gained.
 constexpr int kMostCorrections = 5;
@@ -108,7 +114,7 @@ std::optional<int> ComponentNewton::solve(const Points& before, Points& position
   // Ordering takes time, and a component that is never solved needs none.
   if (!solver_) solver_ = make_system_solver(component_);
   // At the target of the forces the inertia term is zero: all energy is in links and proportional to the load.
-  const int iterations = minimise(load * beyond);
+  const int iterations = minimise(load * beyond, steady_displacement);
   last_iterations_ = iterations;
   if (clips_) clip();
   write_to(positions);
@@ -222,7 +228,7 @@ double ComponentNewton::most_beyond() const {
   return most;
 }
 
-int ComponentNewton::minimise(double energy_at_target) {
+int ComponentNewton::minimise(double energy_at_target, double steady_displacement) {
   double energy = start(energy_at_target);
   const double at_first = inertia();
   const double negligible = balanced_fraction(component_) * at_first;
@@ -240,6 +246,7 @@ int ComponentNewton::minimise(double energy_at_target) {
   double modelled = energy_.linearise(x_, target_, component_.rods.empty() ? NearLimit::pushing : NearLimit::slack, system_);
   bool is_too_stiff = false;
   energy_.forget_overshot();
+  if (component_.is_tree && component_.free_count >= kLeastNested && leap(energy, steady_displacement)) modelled = energy;
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
     system_.is_like_last = iteration == 1 && is_calm;
     system_.may_be_left = 0.5 * negligible;
@@ -366,6 +373,23 @@ double ComponentNewton::correct(double reached) {
     if (!goes_on) break;
   }
   return reached;
+}
+
+/// Goes to the minimum of the coarse tree and linearises there, if the energy is lower. Returns whether it is.
+bool ComponentNewton::leap(double& energy, double steady_displacement) {
+  if (!coarse_) {
+    coarse_ = std::make_unique<CoarseTree>(coarsen(component_));
+    on_coarse_ = std::make_unique<ComponentNewton>(coarse_->component, settings_);
+  }
+  if (coarse_->between.size() * kWorthLeaving < component_.points.size()) return false;
+  on_coarse_->forget();
+  tried_ = target_;
+  on_coarse_->solve(before_, tried_, steady_displacement);
+  coarse_->place_others(target_, settings_.max_stretch, tried_);
+  if (energy_.value(tried_, target_) >= energy) return false;
+  x_.swap(tried_);
+  energy = energy_.linearise(x_, target_, NearLimit::slack, system_);
+  return true;
 }
 
 void ComponentNewton::clip() {

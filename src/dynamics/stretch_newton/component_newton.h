@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/state/recorded_impulses.h"
+#include "dynamics/stretch_newton/coarse_tree.h"
 #include "dynamics/stretch_newton/component_solver.h"
 #include "dynamics/stretch_newton/stretch_energy.h"
 #include "dynamics/stretch_newton/stretch_system.h"
@@ -12,7 +13,9 @@
 
 namespace sprung {
 
-/// Minimises StretchEnergy by Newton's method with a backtracking line search.
+/// Minimises StretchEnergy by Newton's method with a backtracking line search. Iterations on a tree that moves by many links in a
+/// step would bring a bend on by a link or two each, and stop far from the minimum. Trees therefore begin at the minimum of a
+/// coarse tree, which is found in the same way (nested iteration, Hackbusch 1985, chapter 5).
 class ComponentNewton final : public ComponentSolver {
  public:
   ComponentNewton(StretchComponent component, const StretchLimitSettings& settings);
@@ -52,7 +55,7 @@ class ComponentNewton final : public ComponentSolver {
   [[nodiscard]] double most_beyond() const;
   void set_initial_iterate();
   void write_to(Points& positions) const;
-  int minimise(double energy_at_target);
+  int minimise(double energy_at_target, double steady_displacement);
   [[nodiscard]] double start(double energy_at_target);
   void note_balance(double energy);
   [[nodiscard]] bool is_at_rest() const;
@@ -61,6 +64,7 @@ class ComponentNewton final : public ComponentSolver {
   [[nodiscard]] double imbalance() const;
   [[nodiscard]] Descent descend(double& energy, double forecast);
   [[nodiscard]] double correct(double reached);
+  bool leap(double& energy, double steady_displacement);
   void clip();
 
   StretchComponent component_;
@@ -68,6 +72,8 @@ class ComponentNewton final : public ComponentSolver {
   StretchEnergy energy_;
   std::span<const RodRow> rows_;
   std::unique_ptr<StretchSystemSolver> solver_;  ///< made by the first solve
+  std::unique_ptr<CoarseTree> coarse_;           ///< made when it was needed
+  std::unique_ptr<ComponentNewton> on_coarse_;   ///< solves for coarse_; remembers nothing between solves
   bool clips_;
   int last_iterations_ = std::numeric_limits<int>::max();             ///< of the previous solve, if any
   double mass_ = 0.0;                                                 ///< of all free points [kg]

@@ -12,7 +12,6 @@ constexpr Index kLeastParticles = 8192;
 
 // Between coarse points a rotating cloth is longer than they show, by some tenths of a per cent. Passes correct that, but they
 // come to rest only where coarse links stay well within the tolerance.
-constexpr double kLeastTolerance = 0.005;
 constexpr double kFractionOfTolerance = 0.25;
 
 // Taut regions are straightened by at most this fraction of the fall per step, as by the same fraction of gravity. With the whole
@@ -148,7 +147,7 @@ std::unique_ptr<ComponentSolver> make_component_solver(const SpringNetwork& netw
                                                        const StretchLimitSettings& settings, const LimitUse& use) {
   // Bodies that may collide are excluded: contact below the coarse level's resolution threw them up.
   const bool is_limp = !component.is_tree && !component.is_elastic && !use.may_collide;
-  if (is_limp && component.free_count >= kLeastParticles && settings.tolerance >= kLeastTolerance) {
+  if (is_limp && component.free_count >= kLeastParticles) {
     if (auto coarse = coarsen(network, component, settings.kinds)) {
       return std::make_unique<TwoLevelNewton>(component, std::move(*coarse), settings);
     }

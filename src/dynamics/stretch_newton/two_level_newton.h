@@ -53,7 +53,7 @@ class TwoLevelNewton final : public ComponentSolver {
 };
 
 /// Chooses the solver of a component: two levels for a cloth from make_cloth without stiffness, with at least 8,192 free
-/// particles, that collides with nothing and whose tolerance is at least 0.5 %; otherwise one level.
+/// particles, that collides with nothing; otherwise one level.
 [[nodiscard]] std::unique_ptr<ComponentSolver> make_component_solver(const SpringNetwork& network, StretchComponent component,
                                                                      const StretchLimitSettings& settings, const LimitUse& use);
 
