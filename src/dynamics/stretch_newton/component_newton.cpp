@@ -60,7 +60,7 @@ constexpr double kCalmDeformation = 1.0 / 240.0;
 // Clipped links keep this fraction of the tolerance, so that rounding does not put them beyond the limit; without a tolerance the
 // second constant applies.
 constexpr double kClipFraction = 0.99;
-constexpr double kClipRounding = 1.0 - 0x1p-40;
+constexpr double kClipRounding = 1.0 - 0x1p-36;
 
 // Positions are equal if they differ by rounding alone; this fraction of the extent bounds it far from the origin too.
 constexpr double kSamePosition = 0x1p-40;
