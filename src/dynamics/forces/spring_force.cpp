@@ -16,10 +16,11 @@ namespace {
 
 using Repeated = std::array<double, kSimdWidth>;
 
-/// A constant of a run: the network's array, or one repeated value if all are the same.
-SpringConstant constant_of(const std::vector<double>& values, Index spring, bool same, Repeated& repeated) {
+/// A constant of a run: the network's array, or one repeated value if all are the same. Reading that value from the array would
+/// miss the cache in large solids.
+SpringConstant constant_of(const std::vector<double>& values, Index spring, bool same, double value, Repeated& repeated) {
   if (!same) return {&values[spring], false};
-  repeated.fill(values[spring]);
+  repeated.fill(value);
   return {repeated.data(), true};
 }
 
@@ -34,17 +35,18 @@ void add_run(const SpringPlan::Run& run, const ForceSprings& of, const Kinematic
   Repeated rest_length;
   Repeated stiffness;
   Repeated damping;
-  add_run_forces({.x_a = at.x.col(run.first).data(),
-                  .x_b = at.x.col(run.second).data(),
-                  .v_a = at.v.col(run.first).data(),
-                  .v_b = at.v.col(run.second).data(),
-                  .force_a = run.writes_first ? forces.col(run.first).data() : nullptr,
-                  .force_b = run.writes_second ? forces.col(run.second).data() : nullptr,
-                  .count = run.count},
-                 {.rest_length = constant_of(of.springs.rest_length, run.spring, run.same_rest_length, rest_length),
-                  .stiffness = constant_of(of.stiffness, run.spring, run.same_stiffness, stiffness),
-                  .damping = constant_of(of.damping, run.spring, run.same_damping, damping),
-                  .tension_only = run.tension_only});
+  add_run_forces(
+      {.x_a = at.x.col(run.first).data(),
+       .x_b = at.x.col(run.second).data(),
+       .v_a = at.v.col(run.first).data(),
+       .v_b = at.v.col(run.second).data(),
+       .force_a = run.writes_first ? forces.col(run.first).data() : nullptr,
+       .force_b = run.writes_second ? forces.col(run.second).data() : nullptr,
+       .count = run.count},
+      {.rest_length = constant_of(of.springs.rest_length, run.spring, run.same_rest_length, run.rest_length, rest_length),
+       .stiffness = constant_of(of.stiffness, run.spring, run.same_stiffness, run.stiffness, stiffness),
+       .damping = constant_of(of.damping, run.spring, run.same_damping, run.damping, damping),
+       .tension_only = run.tension_only});
 }
 
 /// Springs gathered one by one. The forces of padding entries are not used.

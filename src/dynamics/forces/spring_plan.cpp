@@ -90,7 +90,8 @@ class Planner {
       const Index spring = section.spring + i;
       block.runs.push_back({section.first + i, section.second + i, spring, count, writes_first, writes_second,
                             all_same(springs_.rest_length, spring, count) && !any_yields(spring, count),
-                            all_same(stiffness_, spring, count), all_same(damping_, spring, count), tension_only});
+                            all_same(stiffness_, spring, count), all_same(damping_, spring, count), tension_only,
+                            springs_.rest_length[spring], stiffness_[spring], damping_[spring]});
       i += count;
     }
   }

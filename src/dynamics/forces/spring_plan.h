@@ -19,10 +19,13 @@ struct SpringPlan {
     Index count;
     bool writes_first;
     bool writes_second;
-    bool same_rest_length;  ///< all springs of the run have this in common for ever; the constant is then read once
+    bool same_rest_length;  ///< all springs of the run have this in common for ever: the value is below
     bool same_stiffness;
     bool same_damping;
-    bool tension_only;  ///< all springs of the run are, or none
+    bool tension_only;   ///< all springs of the run are, or none
+    double rest_length;  ///< [m], of the first spring
+    double stiffness;    ///< [N/m]
+    double damping;      ///< [N s/m]
   };
 
   /// A spring outside of all runs.
