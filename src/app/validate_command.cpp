@@ -21,7 +21,9 @@ constexpr int kDigits = 6;
 
 std::string time_text(const LoadedScene& loaded) {
   const std::string stable = std::isfinite(loaded.largest_stable_step)
-                                 ? "the largest stable step is " + format_upper_bound(loaded.largest_stable_step) + " s"
+                                 ? std::string("the largest stable ") +
+                                       (loaded.simulator.settings().inner_substeps > 1 ? "substep" : "step") + " is " +
+                                       format_upper_bound(loaded.largest_stable_step) + " s"
                                  : "every step is stable";
   return text_row("frames", fmt::format("{} at {} per second", loaded.frames, format_number(loaded.scene.frame_rate, kDigits))) +
          text_row("per frame", describe_steps(loaded) + "; " + stable);

@@ -15,7 +15,7 @@ struct Column {
 using Frame = FrameDiagnostics;
 
 std::string name_of(PlanReason reason) {
-  constexpr std::array kNames{"first", "excess", "deformation", "rotation", "infeasible", "solver_trial", "wake"};
+  constexpr std::array kNames{"first", "excess", "deformation", "rotation", "infeasible", "solver_trial", "wake", "strain"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 

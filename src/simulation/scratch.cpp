@@ -28,12 +28,12 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
       integrator(make_integrator(settings.integrator, network)),
       constraints(network, settings, structure.contacts, *integrator, !obstacles.empty()),
       pin_paths(network, obstacles.obstacles(), settings.step),
-      planner(network, settings, constraints.limit()),
+      planner(network, settings, constraints.limit(), settings.step > advised_step(settings.integrator, bounds)),
       energy_watch(network, settings, obstacles.obstacles(), forces),
       rest(network, structure.groups, constraints.limit(), settings.gravity),
       surroundings(network, obstacles, structure.groups, settings.step, settings.gravity) {
   if (splits_dampers(settings, bounds)) {
-    const double most = most_damping_rate(settings.step);
+    const double most = most_damping_rate(settings.longest_substep());
     integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
   }
   note_touched(control.touched, structure.groups);

@@ -360,6 +360,7 @@ StepReport& StepReport::operator+=(const StepReport& substep) {
   limit_solves += substep.limit_solves;
   stretch_excess = std::max(stretch_excess, substep.stretch_excess);
   truncated += substep.truncated;
+  truncation_strain = std::max(truncation_strain, substep.truncation_strain);
   infeasible += substep.infeasible;
   max_infeasible = std::max(max_infeasible, substep.infeasible);
   deformation = substep.deformation;

@@ -98,7 +98,8 @@ enum class PlanReason : std::uint8_t {
   rotation,      ///< an obstacle or pin rotates far
   infeasible,    ///< with fewer, particles had no admissible position
   solver_trial,  ///< another solver of the stretch limit was better
-  wake           ///< it was repeated with some sleepers awake
+  wake,          ///< it was repeated with some sleepers awake
+  strain         ///< with fewer, truncation strained a spring
 };
 
 /// What StepPlanner has learnt from former steps.

@@ -186,6 +186,13 @@ double StretchLimit::step_for_layers(double acceleration) const {
   return smallest;
 }
 
+bool StretchLimit::uses_newton() const {
+  for (std::size_t b = 0; newton_ && b < network_.bodies.size(); ++b) {
+    if (newton_->solves_any_of(b)) return true;
+  }
+  return false;
+}
+
 bool StretchLimit::follows_deformation(const std::vector<StretchHandover>& handovers) const {
   if (!newton_ || settings_.max_compression < 1.0) return false;
   for (std::size_t b = 0; b < network_.bodies.size(); ++b) {

@@ -101,6 +101,9 @@ class StretchLimit {
   /// others become slack and are thrown.
   [[nodiscard]] bool bears_smaller_steps() const;
 
+  /// Whether Newton's method solves for any springs from the start.
+  [[nodiscard]] bool uses_newton() const;
+
   /// Whether Newton's method solves for all springs, counting the bodies that were handed over. It keeps the limit at any step,
   /// but removes more motion the larger the relative deformation in a step, so that steps are chosen by `deformation`.
   [[nodiscard]] bool follows_deformation(const std::vector<StretchHandover>& handovers = {}) const;

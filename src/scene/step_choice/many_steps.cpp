@@ -158,16 +158,19 @@ std::string reason(const Scene& scene, const SpringNetwork& network, double step
 
 std::optional<std::string> many_steps_warning(const Scene& scene, const SpringNetwork& network, const StepChoice& choice,
                                               bool by_passes) {
-  if (choice.steps_per_frame <= kManySteps) return std::nullopt;
-  const std::string steps = "\"step\": \"auto\" takes " + std::to_string(choice.steps_per_frame) + " steps of " +
-                            format_number(choice.step, kDigits) + " s a frame: ";
+  const int count = choice.steps_per_frame * choice.inner_substeps;
+  const double step = choice.step / choice.inner_substeps;
+  if (count <= kManySteps) return std::nullopt;
+  const std::string steps = "\"step\": \"auto\" takes " + std::to_string(count) +
+                            (choice.inner_substeps > 1 ? " substeps of " : " steps of ") + format_number(step, kDigits) +
+                            " s a frame: ";
   if (by_passes) {
     return steps + "passes of the stretch limit require that. Use more \"iterations\" or \"solver\": \"newton\".";
   }
   if (std::holds_alternative<ExplicitEulerSettings>(scene.settings.integrator)) {
     return steps + "explicit Euler gains energy in larger steps. Use \"symplectic_euler\".";
   }
-  return steps + reason(scene, network, choice.step) + ".";
+  return steps + reason(scene, network, step) + ".";
 }
 
 }  // namespace sprung

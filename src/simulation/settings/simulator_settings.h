@@ -53,7 +53,7 @@ struct SimulatorSettings {
   int max_substeps = 1;
   /// Parts of each substep in which forces, the stretch limit and its contacts act, while contacts are found and paths are checked
   /// once: in [1, kMaxInnerSubsteps]. More than 1 requires contact by projection and a scheme other than implicit Euler. Where
-  /// global solves enforce all limits, there is one.
+  /// global solves enforce all limits and forces bear the whole step, there is one.
   int inner_substeps = 1;
   /// Whether particles at rest sleep; see RestDetector and Surroundings.
   bool sleep = true;
@@ -62,6 +62,9 @@ struct SimulatorSettings {
   std::uint64_t seed = 0;  ///< of the directions of such pushes
   /// Whether steps record the impulses of pins and springs, for Simulator::reactions and limit_tensions. Changes no other result.
   bool record_forces = false;
+
+  /// The longest interval in which forces act [s].
+  [[nodiscard]] double longest_substep() const { return step / inner_substeps; }
 
   /// Whether the air acts on all bodies. It also acts on those that have a drag of their own: see Body::drag.
   [[nodiscard]] bool has_air() const { return air_drag > 0.0 || !air_surface.is_zero(); }

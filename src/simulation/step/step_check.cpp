@@ -47,13 +47,13 @@ StepAdvice advise_at_most(const SimulatorSettings& settings, double largest) {
 // A smaller step of a scheme that gains energy still gains it.
 StepAdvice advise_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
   const double largest = advised_step(settings.integrator, bounds);
-  if (!gains_energy(settings.integrator, bounds, std::min(settings.step, largest))) {
+  if (!gains_energy(settings.integrator, bounds, std::min(settings.longest_substep(), largest))) {
     StepAdvice advice = advise_at_most(settings, largest);
     if (advice.step) advice.text += ", or \"auto\"";
     return advice;
   }
   const double largest_symplectic = advised_step(SymplecticEulerSettings{}, bounds);
-  if (settings.step <= largest_symplectic) return {"\"symplectic_euler\""};
+  if (settings.longest_substep() <= largest_symplectic) return {"\"symplectic_euler\""};
   StepAdvice advice = advise_at_most(settings, largest_symplectic);
   return {"\"symplectic_euler\" with " + advice.text + (advice.step ? " or \"auto\"" : "")};
 }
@@ -146,7 +146,7 @@ double advised_step(const IntegratorSettings& settings, const SpectralBounds& bo
 
 bool splits_dampers(const SimulatorSettings& settings, const SpectralBounds& bounds) {
   return bounds.material_damping > 0.0 && may_split_dampers(settings.integrator) &&
-         settings.step > kStableFraction * largest_stable_step(settings.integrator, with_all_dampers(bounds));
+         settings.longest_substep() > kStableFraction * largest_stable_step(settings.integrator, with_all_dampers(bounds));
 }
 
 bool is_unstable(double step, double largest_stable) {
@@ -156,7 +156,7 @@ bool is_unstable(double step, double largest_stable) {
 
 Problem unstable_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
   return {.key = "step",
-          .value = format_number(settings.step),
+          .value = format_number(settings.longest_substep()),
           .rule = "is beyond the largest stable step, " + format_upper_bound(largest_stable_step(settings.integrator, bounds)) +
                   " s, bounded by " + bounds.strictest,
           .remedy = "use " + advise_step(settings, bounds).text +
@@ -164,7 +164,7 @@ Problem unstable_step(const SimulatorSettings& settings, const SpectralBounds& b
 }
 
 std::vector<std::string> check_step(const SimulatorSettings& settings, const SpectralBounds& bounds) {
-  const double step = settings.step;
+  const double step = settings.longest_substep();
   if (!(step > 0.0) || !std::isfinite(step)) {
     throw InputError({.key = "step", .value = format_number(step), .rule = "must be a positive number of seconds"});
   }
@@ -186,8 +186,8 @@ std::vector<std::string> check_step(const SimulatorSettings& settings, const Spe
 }
 
 void set_divergence_remedy(const SimulatorSettings& settings, const SpectralBounds& bounds, StepFailure& failure) {
-  const bool gains = gains_energy(settings.integrator, bounds, settings.step);
-  const bool too_large = settings.step > advised_step(settings.integrator, bounds);
+  const bool gains = gains_energy(settings.integrator, bounds, settings.longest_substep());
+  const bool too_large = settings.longest_substep() > advised_step(settings.integrator, bounds);
   if (!gains && !too_large && !failure.remedy.empty()) return;
   const StepAdvice advice = gains || too_large ? advise_step(settings, bounds) : advise_at_most(settings, 0.5 * settings.step);
   failure.smaller_step = advice.step;

@@ -58,6 +58,19 @@ constexpr int kCorrections = 16;
 // The excess at which correct_positions() ends. The next step would remove more of it at once, with speed.
 constexpr double kCorrected = 1.0e-6;
 
+/// The largest relative motion of a spring's ends, in rest lengths.
+double largest_strain(const Springs& springs, const Points& displacement) {
+  double largest = 0.0;
+  for (Index s = 0; s < springs.count(); ++s) {
+    const double length = springs.rest_length[s];
+    if (length > 0.0) {
+      const Vector3 apart = displacement.col(springs.first[s]) - displacement.col(springs.second[s]);
+      largest = std::max(largest, apart.squaredNorm() / (length * length));
+    }
+  }
+  return std::sqrt(largest);
+}
+
 }  // namespace
 
 StepConstraints::StepConstraints(const SpringNetwork& network, const SimulatorSettings& settings, ContactProjection& contacts,
@@ -222,6 +235,7 @@ void StepConstraints::end_contact_step(const ObstacleFrame& frame, SimulationSta
     return responds ? respond_to_truncation(state, forces) : relax(frame, positions, report.stretch_excess, violation_before);
   };
   if (responds) responded_ = state.x;
+  const Points projected = can_collide ? state.x : Points();
   if (inner_ == 1) {
     if (can_collide) contacts_.truncate(frame, motion(), state.x, relax_again);
     integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
@@ -233,6 +247,7 @@ void StepConstraints::end_contact_step(const ObstacleFrame& frame, SimulationSta
   }
   if (can_collide) contacts_.limit_speed_of_moved(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();
+  if (report.truncated > 0) report.truncation_strain = largest_strain(network_.springs, state.x - projected);
   report.infeasible = contacts_.infeasible_count();
   if (limit_ && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit_->excess(state.x);
 }

@@ -38,26 +38,28 @@ struct StepTrial {
 };
 
 /// All that divides or repeats a step. It is divided into contact steps, and each of them into the inner substeps of the settings,
-/// or into one where global solves enforce all limits:
+/// or into one where global solves enforce all limits and forces bear the whole step:
 /// - Excess: the length of the contact steps is halved as soon as a step ends with more excess over the stretch limit than the
 ///   bound, and doubled after eight steps in a row with less than a quarter of the bound. The excess of a swinging body grows with
 ///   the length of the substep, the excess of a hanging body with its square.
 /// - Deformation: global solves satisfy the limit at any step, but their projection damps motion in proportion to the deformation
 ///   in a substep. Each substep deforms or rotates a body by at most 1/70 (see StretchLimit::deformation).
 /// - Rotation: no obstacle or pin rotates by more than 45 degrees in a contact step.
-/// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the contact steps until there are none: a
-/// long
+/// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the contact steps until there are none: a long
 ///   step can miss an admissible position near a pin or before a fast obstacle. An attempt that does not halve the number
 ///   of infeasible particles is abandoned, because it could take hundreds of times longer. After a repetition without effect, no
 ///   step is repeated for a waiting time, which doubles each time and ends after enough feasible steps. A step with more infeasible
 ///   particles than any during the wait is repeated nevertheless, as its cause may be another.
+/// - Strain: where truncation strained a spring by more than a tenth, a step of inner substeps is repeated with 4, then 16 times the
+///   contact steps, up to one for each inner substep. The strain would become speed.
 /// - Solver trial: a body whose solver missed the limit in several steps in a row tries the other solver on the same step, and
 ///   keeps it if it leaves less excess. Newton's method costs more, so it must leave at most four fifths of the
 ///   excess that the passes leave. A body that keeps its solver waits twice as long for its next trial.
 class StepPlanner {
  public:
-  /// `limit` is null without a stretch limit; references to it and to the network are kept.
-  StepPlanner(const SpringNetwork& network, const SimulatorSettings& settings, const StretchLimit* limit);
+  /// `limit` is null without a stretch limit; references to it and to the network are kept. `forces_need_inner`: forces would not
+  /// bear a whole step.
+  StepPlanner(const SpringNetwork& network, const SimulatorSettings& settings, const StretchLimit* limit, bool forces_need_inner);
 
   /// Sets the substeps of the first step. `moves`: whether anything moves at the start, when no deformation is known yet.
   void start(bool moves, SimulationState& state) const;
@@ -82,6 +84,7 @@ class StepPlanner {
 
  private:
   [[nodiscard]] std::optional<StepPlan> repetition(std::span<const StepTrial> tried, const SimulationState& begin) const;
+  [[nodiscard]] std::optional<StepPlan> repetition_for_strain(std::span<const StepTrial> tried, const SimulationState& begin) const;
   void learn_of_repetitions(std::span<const StepTrial> tried, SimulationState& state) const;
   void learn_of_trial(std::span<const StepTrial> tried, SimulationState& state) const;
   void choose_substeps(std::span<const StepTrial> tried, SimulationState& state) const;
@@ -95,6 +98,7 @@ class StepPlanner {
   const SpringNetwork& network_;
   const StretchLimit* limit_;
   int inner_substeps_;
+  bool forces_need_inner_;
   int max_substeps_;    ///< contact steps that excess and deformation may ask for; 1 without a limit
   bool awaits_newton_;  ///< see StretchLimit::may_follow_deformation
 };

@@ -325,6 +325,40 @@ TEST(StepChoice, AutoUsesInnerSubstepsForPassesWhereContactIsPossible) {
   EXPECT_EQ(built(64, {"step=0.0005208333333333333"}).inner_substeps, 1) << "the step is given";
 }
 
+// Contact of a body that falls on an obstacle does not need the small steps that its springs need either.
+TEST(StepChoice, AutoUsesInnerSubstepsForStiffSpringsWhereContactIsPossible) {
+  const auto built = [](double stiffness, const std::vector<std::string>& changes = {}) {
+    const SceneFolder folder;
+    const std::string text =
+        R"({"duration": 1, "frame_rate": 60, "obstacles": {"floor": {"shape": {"type": "half_space", "offset": -5}}},
+        "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.11,
+        "springs": {"structural": {"stiffness": 100}}}}})";
+    std::vector<std::string> all = changes;
+    all.push_back("bodies.rope.springs.structural.stiffness=" + std::to_string(stiffness));
+    return build_scene(folder.read(text, all)).settings;
+  };
+  for (const double stiffness : {2.0e4, 2.0e5}) {
+    const SimulatorSettings settings = built(stiffness);
+    EXPECT_EQ(settings.steps_per_frame, 4) << "1/240 s";
+    // What forces bear without contact.
+    const SimulatorSettings free = built(stiffness, {"obstacles={}"});
+    EXPECT_EQ(free.inner_substeps, 1);
+    EXPECT_LE(settings.longest_substep(), free.step * (1.0 + 1e-12)) << stiffness;
+    EXPECT_GT(settings.longest_substep(), 0.8 * free.step) << stiffness;
+  }
+  // 64 inner substeps are the most; more contact steps follow.
+  const SimulatorSettings stiffest = built(2.0e9);
+  EXPECT_GT(stiffest.steps_per_frame, 4);
+  EXPECT_LE(stiffest.longest_substep(), built(2.0e9, {"obstacles={}"}).step * (1.0 + 1e-12));
+  EXPECT_EQ(built(2.0e4, {R"(integrator={"type": "implicit_euler"})"}).inner_substeps, 1);
+  EXPECT_EQ(built(2.0e4, {"bodies.rope.self_contact=true"}).inner_substeps, 1) << "no gap between layers";
+  EXPECT_GT(built(2.0e4, {"bodies.rope.self_contact=true", "bodies.rope.thickness=0.01"}).inner_substeps, 1);
+  EXPECT_EQ(built(2.0e4, {R"(stretch_limit={"max_stretch": 0.02})"}).inner_substeps, 1) << "Newton's method solves for the rope";
+  EXPECT_EQ(built(2.0e4, {R"(contact={"response": "penalty", "stiffness": 100, "damping": 0.01})", "bodies.rope.thickness=0.01"})
+                .inner_substeps,
+            1);
+}
+
 // Passes need the substeps. After a handover to the global solve, the whole step suffices.
 TEST(StepChoice, AutoUsesSubstepsForPassesThatMayBeReplaced) {
   const auto built = [](const std::vector<std::string>& changes) {

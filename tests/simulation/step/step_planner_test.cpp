@@ -36,10 +36,12 @@ StretchLimitSettings limit_of(Solver solver) {
 /// A planner of steps with at most eight substeps, and its state.
 class Planned {
  public:
-  explicit Planned(std::optional<Solver> solver, int max_substeps = 8) : network_(limp_cloth()), state_(initial_state(network_)) {
-    SimulatorSettings settings{.max_substeps = max_substeps};
+  explicit Planned(std::optional<Solver> solver, int max_substeps = 8, int inner_substeps = 1, bool forces_need_inner = false)
+      : network_(limp_cloth()), state_(initial_state(network_)) {
+    SimulatorSettings settings{.max_substeps = max_substeps, .inner_substeps = inner_substeps};
     if (solver) limit_.emplace(network_, limit_of(*solver), LimitUse{.may_collide = true});
-    planner_.emplace(network_, settings, limit_ ? &*limit_ : nullptr);
+    planner_.emplace(network_, settings, limit_ ? &*limit_ : nullptr, forces_need_inner);
+    planner_->start(false, state_);
   }
 
   /// Makes a step in which attempt k has the report `reports[k]`, the last of them for all others; returns the attempts.
@@ -209,6 +211,42 @@ TEST(StepPlanner, KeepsTheAttemptWithTheFewestInfeasibleParticles) {
   EXPECT_EQ(planned.best(), 2U) << "3 is not half of 5, 1 is not less than half of 2";
 }
 
+// Up to one contact step for each inner substep.
+TEST(StepPlanner, RepeatsAStepInWhichTruncationStrainsASpringByATenth) {
+  const auto contact_steps = [](int inner, const std::vector<double>& strains) {
+    Planned planned(std::nullopt, 1, inner);
+    std::vector<StepReport> reports;
+    for (const double strain : strains) reports.push_back({.truncated = 1, .truncation_strain = strain});
+    std::vector<int> steps;
+    for (const StepTrial& trial : planned.step(reports)) {
+      steps.push_back(trial.plan.contact_steps);
+      EXPECT_GE(trial.plan.substeps(), inner);
+    }
+    EXPECT_EQ(planned.best() + 1, steps.size());
+    return steps;
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(contact_steps(20, {0.09}), ElementsAre(1));
+  EXPECT_THAT(contact_steps(20, {0.11, 0.09}), ElementsAre(1, 4));
+  EXPECT_THAT(contact_steps(20, {0.11}), ElementsAre(1, 4, 16));
+  EXPECT_THAT(contact_steps(15, {0.11}), ElementsAre(1, 4));
+  EXPECT_THAT(contact_steps(2, {0.11}), ElementsAre(1, 4));
+  EXPECT_THAT(contact_steps(1, {0.11}), ElementsAre(1));
+}
+
+// A global solve needs no inner substeps. Forces keep theirs, also where a repeated step has more contact steps.
+TEST(StepPlanner, LetsNoSubstepBeLongerThanForcesBear) {
+  const auto inner = [](bool forces_need_inner) {
+    Planned planned(Solver::newton, 8, 6, forces_need_inner);
+    return planned.step({Planned::infeasible_report(2), Planned::infeasible_report(0)});
+  };
+  EXPECT_EQ(inner(false).front().plan.inner, 1);
+  const std::vector<StepTrial> tried = inner(true);
+  ASSERT_EQ(tried.size(), 2u);
+  EXPECT_EQ(tried[0].plan.inner, 6);
+  EXPECT_GE(tried[1].plan.substeps(), 6);
+}
+
 TEST(StepPlanner, RepeatsMoreRarelyWhileItDoesNotHelp) {
   const auto repeated_in = [](int steps) {
     Planned planned(std::nullopt);
@@ -329,7 +367,7 @@ TEST(StepPlanner, CountsMissedStepsPerBody) {
   }
   const SpringNetwork network = builder.build();
   const StretchLimit limit(network, limit_of(Solver::automatic), {.may_collide = true});
-  const StepPlanner planner(network, {}, &limit);
+  const StepPlanner planner(network, {}, &limit, false);
   SimulationState state = initial_state(network);
   state.x.rightCols(9) *= 1.5;
   const StepTrial trial{.plan = {}, .report = {.stretch_excess = limit.excess(state.x)}};
