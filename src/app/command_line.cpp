@@ -1,5 +1,6 @@
 #include "app/command_line.h"
 
+#include "output/exporters/exporter.h"
 #include "scene/json/nearest_name.h"
 #include "simulation/step/frame_steps.h"
 
@@ -27,6 +28,7 @@ constexpr const char* kExamples = R"(Examples:
   sprung view examples/hanging_cloth.json
   sprung view frames
   sprung export frames --format html
+  sprung export frames --format gltf,npz --out elsewhere
   sprung materials cotton
 
 Meshes are searched beside the scene file (by info: where you are), in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
@@ -83,9 +85,12 @@ class Parser {
     run->add_option("--out", run_.out, "Folder for the frames; must be empty or not exist, unless the run is resumed")
         ->required()
         ->type_name("DIR");
-    run->add_option("--format", run_.format, "obj: OBJ sequences, the default; none: record.bin and diagnostics alone")
-        ->check(CLI::IsMember({"obj", "none"}))
-        ->type_name("FORMAT");
+    run->add_option(
+           "--format", run_.formats,
+           "obj: OBJ sequences, the default; none: record.bin and diagnostics alone; or any of those of export, as obj,npz")
+        ->delimiter(',')
+        ->check(CLI::IsMember(run_formats()))
+        ->type_name("FORMAT,...");
     run->add_option("--frames", run_.frames, "Number of frames, instead of the scene's duration")
         ->check(CLI::Range(1, kMostFrames))
         ->type_name("N");
@@ -139,13 +144,17 @@ class Parser {
   void add_export() {
     CLI::App* command = app_.add_subcommand("export", "Writes a run in another file format");
     command->add_option("DIR", export_.folder, "Folder of a run")->required()->type_name("");
-    command->add_option("--format", export_.formats, "Required. html: one file that plays in a browser")
+    command
+        ->add_option("--format", export_.formats,
+                     "Required. html: one file that plays in a browser; obj, ply, vtk: a file for each body and frame; pc2, mdd: a "
+                     "point cache for each body; gltf, npz (float32), npz64, usda: one file")
         ->delimiter(',')
         ->check(CLI::IsMember(export_formats()))
-        ->type_name("FORMAT");
-    command->add_option("--out", export_.out, "File to write; DIR/animation.html by default")->type_name("PATH");
+        ->type_name("FORMAT,...");
+    command->add_option("--out", export_.out, "Folder to write into, of html alone the file; by default the folder of the run")
+        ->type_name("PATH");
     command->add_option("--mesh-path", unused_mesh_paths_)->group("");  // hidden: an export needed meshes once
-    command->add_flag("--overwrite", export_.overwrite, "Replace the file if it exists");
+    command->add_flag("--overwrite", export_.overwrite, "Replace files that exist");
   }
 
   void add_materials() {
@@ -166,7 +175,17 @@ class Parser {
     throw UsageError(unexpected(help_of_, app_) + "see sprung --help");
   }
 
-  static std::vector<std::string> export_formats() { return {"html"}; }
+  static std::vector<std::string> export_formats() {
+    std::vector<std::string> formats{"html"};
+    formats.insert(formats.end(), exporter_formats().begin(), exporter_formats().end());
+    return formats;
+  }
+
+  static std::vector<std::string> run_formats() {
+    std::vector<std::string> formats = export_formats();
+    formats.emplace_back("none");
+    return formats;
+  }
 
   static std::string is_interval(const std::string& text) {
     char* end = nullptr;

@@ -14,7 +14,7 @@ namespace sprung {
 struct RunOptions {
   SceneSource scene;
   std::string out;
-  std::string format = "obj";  ///< of the frames: obj, or none
+  std::vector<std::string> formats{"obj"};  ///< of the frames; none, alone: none
   std::optional<int> frames;
   std::optional<int> threads;
   bool quiet = false;
@@ -44,7 +44,7 @@ struct ViewOptions {
 struct ExportOptions {
   std::string folder;  ///< of a run
   std::vector<std::string> formats;
-  std::string out;  ///< empty: animation.html in the folder
+  std::string out;  ///< html alone: a file; else a folder; empty: the folder of the run
   bool overwrite = false;
 };
 

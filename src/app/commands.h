@@ -4,6 +4,9 @@
 #include "app/command_line.h"
 #include "app/exit_code.h"
 
+#include <filesystem>
+#include <string>
+
 namespace sprung {
 
 /// Simulates a scene and writes its frames. Throws InputError, StepError, FileError.
@@ -22,6 +25,10 @@ ExitCode view(const ViewOptions& options);
 /// Writes what a run wrote in other formats. Throws InputError if the folder is no run, or as view(); FileError if a file cannot be
 /// written.
 ExitCode export_run(const ExportOptions& options);
+
+/// Writes a run as one HTML file. Throws InputError if the folder is no run, and in a program that was built without the viewer;
+/// FileError if the file cannot be written.
+void export_html(const std::string& folder, const std::filesystem::path& file);
 
 /// Prints the materials of bodies, or the values of one with their sources. Throws UsageError for an unknown name.
 ExitCode print_materials(const MaterialsOptions& options);

@@ -14,6 +14,6 @@ namespace {
 
 ExitCode view(const ViewOptions& /*options*/) { fail_without_viewer(); }
 
-ExitCode export_run(const ExportOptions& /*options*/) { fail_without_viewer(); }
+void export_html(const std::string& /*folder*/, const std::filesystem::path& /*file*/) { fail_without_viewer(); }
 
 }  // namespace sprung

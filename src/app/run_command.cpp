@@ -7,11 +7,13 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "base/parallel.h"
+#include "output/exporters/exporter.h"
 #include "output/run_output.h"
 #include "scene/building/strength_scatter.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -20,6 +22,34 @@
 
 namespace sprung {
 namespace {
+
+bool has_format(const RunOptions& options, const std::string& format) {
+  return std::ranges::find(options.formats, format) != options.formats.end();
+}
+
+/// Throws UsageError if they do not go together.
+void check_formats(const RunOptions& options, bool writes_record) {
+  if (has_format(options, "none") && options.formats.size() > 1) {
+    throw UsageError("--format none goes with no other format; leave it out");
+  }
+  if (writes_record) return;
+  if (has_format(options, "none")) {
+    throw UsageError("--format none with \"record\": false writes no frames; leave out one of them");
+  }
+  for (const std::string& format : options.formats) {
+    if (format == "obj" || format == "ply" || format == "vtk") continue;
+    throw UsageError(fmt::format("--format {} is made from record.bin at the end of the run; leave out \"record\": false", format));
+  }
+}
+
+/// Those that exporters make.
+std::vector<std::string> further_formats(const RunOptions& options) {
+  std::vector<std::string> formats;
+  for (const std::string& format : exporter_formats()) {
+    if (format != "obj" && has_format(options, format)) formats.push_back(format);
+  }
+  return formats;
+}
 
 RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int threads) {
   BodyMaterials materials;
@@ -38,8 +68,9 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
           .sources = loaded.sources,
           .scene_file = loaded.scene.file.filename().string(),
           .materials = std::move(materials),
-          .write_obj = options.format == "obj",
+          .write_obj = has_format(options, "obj"),
           .write_record = loaded.scene.write_record,
+          .formats = further_formats(options),
           .checkpoint_interval = options.checkpoint};
 }
 
@@ -161,9 +192,7 @@ ExitCode run(const RunOptions& options) {
   const ThreadLimit limit(threads);
   LoadedScene loaded = load_scene(options.scene);
   loaded.frames = options.frames.value_or(loaded.frames);
-  if (options.format == "none" && !loaded.scene.write_record) {
-    throw UsageError("--format none with \"record\": false writes no frames; leave out one of them");
-  }
+  check_formats(options, loaded.scene.write_record);
   std::error_code ignored;
   if (!loaded.initial_state.empty() && std::filesystem::equivalent(loaded.initial_state, options.out, ignored)) {
     throw FileError("write into the folder", options.out, "the scene begins from the run in it; choose another folder");
@@ -180,7 +209,11 @@ ExitCode run(const RunOptions& options) {
   }
   std::string memory;
   RunOutput output = open_output(std::move(folder), facts, point, loaded, memory);
-  if (!options.quiet) announce(loaded);
+  if (!options.quiet) {
+    announce(loaded);
+    const bool tears = std::ranges::any_of(loaded.simulator.network().springs.laws, &SpringLaw::breaks);
+    for (const std::string& loss : output.losses(tears)) print_message(loss);
+  }
   Run run{loaded, output, RunWatch(loaded.simulator, output, options.quiet)};
   if (!memory.empty()) run.watch.restore(memory);
   const int begin = output.frames_written();
@@ -193,6 +226,7 @@ ExitCode run(const RunOptions& options) {
   const std::string time = describe_duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
   const int written = output.frames_written();
+  if (has_format(options, "html") && written > 0) export_html(options.out, std::filesystem::path(options.out) / kAnimationFile);
   if (written < loaded.frames) {
     print_message(fmt::format("interrupted; {} of {} frames are in {}{}", written, loaded.frames, options.out,
                               options.checkpoint > 0.0 ? "; --resume goes on" : ""));

@@ -1,10 +1,10 @@
 #include "output/obj_sequence.h"
 
 #include "base/error.h"
+#include "base/files/file_pattern.h"
 #include "base/format.h"
 #include "base/parallel.h"
 #include "geometry/import/text_words.h"
-#include "output/file_pattern.h"
 #include "output/scene_extent.h"
 
 #include <algorithm>

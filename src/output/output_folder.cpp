@@ -1,8 +1,8 @@
 #include "output/output_folder.h"
 
 #include "base/error.h"
+#include "base/files/file_pattern.h"
 #include "base/files/file_writer.h"
-#include "output/file_pattern.h"
 #include "output/run_summary.h"
 
 #include <algorithm>

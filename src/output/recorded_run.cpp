@@ -1,7 +1,7 @@
 #include "output/recorded_run.h"
 
 #include "base/error.h"
-#include "output/file_pattern.h"
+#include "base/files/file_pattern.h"
 #include "output/obj_sequence.h"
 #include "output/record/array_block.h"
 #include "output/record/record_format.h"

@@ -1,13 +1,14 @@
 #include "output/run_output.h"
 
 #include "base/error.h"
+#include "base/files/file_pattern.h"
 #include "base/files/file_writer.h"
 #include "dynamics/state/simulation_state.h"
 #include "output/diagnostics_csv.h"
-#include "output/file_pattern.h"
 #include "output/forces_csv.h"
 #include "output/record/record_encoding.h"
 #include "output/record/record_format.h"
+#include "output/run_export.h"
 #include "simulation/simulator.h"
 
 #include <algorithm>
@@ -77,8 +78,17 @@ std::vector<ObjSequence> sequences_of(const Simulator& simulator, const RunFacts
 }
 
 std::optional<RunRecorder> recorder_of(const Simulator& simulator, const RunFacts& facts) {
-  if (!facts.write_record) return std::nullopt;
+  if (!facts.write_record && facts.formats.empty()) return std::nullopt;
   return RunRecorder(simulator, facts.sources, facts.materials);
+}
+
+std::vector<std::unique_ptr<Exporter>> exporters_of(const RunFacts& facts, const std::optional<RunRecorder>& recorder) {
+  std::vector<std::unique_ptr<Exporter>> exporters;
+  for (const std::string& format : facts.formats) {
+    exporters.push_back(
+        make_exporter(format, {.model = recorder->model(), .frame_rate = facts.frame_rate, .frames = facts.frames}));
+  }
+  return exporters;
 }
 
 }  // namespace
@@ -89,6 +99,8 @@ RunOutput::RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFo
       copies_(facts.write_obj ? copied_files(facts.sources) : std::vector<CopiedFile>()),
       has_forces_(simulator.settings().record_forces),
       recorder_(recorder_of(simulator, facts)),
+      has_record_(facts.write_record),
+      exporters_(exporters_of(facts, recorder_)),
       summary_(facts, simulator.settings().step, patterns()),
       checkpoint_interval_(facts.checkpoint_interval) {}
 
@@ -96,11 +108,11 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
     : RunOutput(facts, simulator, std::move(folder)) {
   if (checkpoint_interval_ > 0.0) identity_ = identity_of(facts.scene, simulator);
   folder_.expect_free(patterns());
-  const std::string head = recorder_ ? encode_head(recorder_->model(), recorder_->frame(simulator)) : "";
-  if (recorder_) summary_.set_record(fingerprint(head));
+  const std::string head = has_record_ ? encode_head(recorder_->model(), recorder_->frame(simulator)) : "";
+  if (has_record_) summary_.set_record(fingerprint(head));
   try {
     write_summary();
-    if (recorder_) folder_.write(kRecordFile, head);
+    if (has_record_) folder_.write(kRecordFile, head);
     folder_.write(kDiagnosticsFile, csv_head());
     if (has_forces_) folder_.write(kForcesFile, forces_csv_head());
   } catch (...) {
@@ -126,7 +138,7 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
     fail(std::string(file) +
          " is shorter than it was at the checkpoint, so frames are missing; run the scene again with --overwrite");
   }
-  if (recorder_) summary_.set_record(fingerprint(encode_head(recorder_->model(), recorder_->frame(simulator))));
+  if (has_record_) summary_.set_record(fingerprint(encode_head(recorder_->model(), recorder_->frame(simulator))));
   identity_ = std::move(run.identity);
   monitor = std::move(run.monitor);
   progress_ = run.progress;
@@ -138,7 +150,7 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
 
 /// Whoever stops it can resume again: it needs only what was written before the checkpoint.
 void RunOutput::take_back_frames(const RunCheckpoint& to) {
-  if (recorder_) folder_.cut(kRecordFile, to.record_size);
+  if (has_record_) folder_.cut(kRecordFile, to.record_size);
   folder_.cut(kDiagnosticsFile, to.diagnostics_size);
   if (has_forces_) folder_.cut(kForcesFile, to.forces_size);
   for (const ObjSequence& sequence : sequences_) {
@@ -146,6 +158,15 @@ void RunOutput::take_back_frames(const RunCheckpoint& to) {
     const std::filesystem::path last = folder_.path() / fill_pattern(sequence.pattern(), progress_.frames_written);
     for (const std::filesystem::path& file : matching_files(folder_.path(), sequence.pattern())) {
       if (file > last) folder_.remove(file.lexically_relative(folder_.path()));
+    }
+  }
+  for (const std::unique_ptr<Exporter>& exporter : exporters_) {
+    for (const std::string& pattern : exporter->patterns()) {
+      if (pattern.find('#') == std::string::npos) continue;
+      const std::filesystem::path last = folder_.path() / fill_pattern(pattern, progress_.frames_written);
+      for (const std::filesystem::path& file : matching_files(folder_.path(), pattern)) {
+        if (file > last) folder_.remove(file.lexically_relative(folder_.path()));
+      }
     }
   }
   for (const std::string& pattern : patterns()) {  // of a program that was killed
@@ -157,10 +178,15 @@ void RunOutput::take_back_frames(const RunCheckpoint& to) {
 
 std::vector<std::string> RunOutput::patterns() const {
   std::vector<std::string> patterns{kRunSummaryFile, kDiagnosticsFile, kAnimationFile, kCheckpointFile};
-  if (recorder_) patterns.emplace_back(kRecordFile);
+  if (has_record_) patterns.emplace_back(kRecordFile);
   if (has_forces_) patterns.emplace_back(kForcesFile);
   for (const ObjSequence& sequence : sequences_) patterns.push_back(sequence.pattern());
   for (const CopiedFile& copy : copies_) patterns.push_back(copy.path);
+  for (const std::unique_ptr<Exporter>& exporter : exporters_) {
+    for (const std::string& pattern : exporter->patterns()) {
+      if (std::ranges::find(patterns, pattern) == patterns.end()) patterns.push_back(pattern);
+    }
+  }
   return patterns;
 }
 
@@ -193,8 +219,19 @@ void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& 
         written.push_back(copy.path);
       }
     }
-    // run.json never counts a frame that the record lacks, even if the program is killed.
-    if (recorder_) record_before = folder_.append(kRecordFile, encode_frame(recorder_->frame(simulator)));
+    if (recorder_) {
+      ExportedFrame frame{.number = progress_.frames_written, .state = recorder_->frame(simulator)};
+      frame.torn = torn_in(recorder_->model(), progress_.torn_faces, frame.number);
+      for (const std::unique_ptr<Exporter>& exporter : exporters_) {
+        if (!exporter->writes_each_frame()) continue;
+        for (const ExportedFile& file : exporter->frame(frame)) {
+          folder_.write(file.path, file.bytes);
+          written.push_back(file.path);
+        }
+      }
+      // run.json never counts a frame that the record lacks, even if the program is killed.
+      if (has_record_) record_before = folder_.append(kRecordFile, encode_frame(frame.state));
+    }
     write_summary();
     if (has_forces_) {
       forces_before = folder_.append(kForcesFile, forces_csv_rows(diagnostics.frame, diagnostics.time, simulator.reactions()));
@@ -223,7 +260,7 @@ std::string RunOutput::write_checkpoint_now(const Simulator& simulator, const st
     run.files = patterns();
     run.progress = progress_;
     run.monitor = monitor;
-    if (recorder_) run.record_size = folder_.size(kRecordFile);
+    if (has_record_) run.record_size = folder_.size(kRecordFile);
     run.diagnostics_size = folder_.size(kDiagnosticsFile);
     if (has_forces_) run.forces_size = folder_.size(kForcesFile);
     Checkpoint checkpoint = simulator.checkpoint();
@@ -238,6 +275,29 @@ std::string RunOutput::write_checkpoint_now(const Simulator& simulator, const st
 void RunOutput::finish(const std::string& outcome) {
   progress_.outcome = outcome;
   write_summary();
+  if (progress_.frames_written > 0) write_whole_files();
+}
+
+void RunOutput::write_whole_files() {
+  const auto write = [this](const ExportedFile& file) { folder_.write(file.path, file.bytes); };
+  std::optional<RecordedRun> run;
+  for (const std::unique_ptr<Exporter>& exporter : exporters_) {
+    if (exporter->writes_each_frame()) {
+      std::ranges::for_each(exporter->end(progress_.frames_written), write);
+      continue;
+    }
+    if (!run) run.emplace(folder_.path());
+    export_frames(*run, *exporter, write);
+  }
+}
+
+std::vector<std::string> RunOutput::losses(bool tears) const {
+  std::vector<std::string> all;
+  for (const std::unique_ptr<Exporter>& exporter : exporters_) {
+    const std::vector<std::string> losses = exporter->losses(tears);
+    all.insert(all.end(), losses.begin(), losses.end());
+  }
+  return all;
 }
 
 void RunOutput::write_summary() {

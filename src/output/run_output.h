@@ -1,6 +1,7 @@
 // The output of a run: OBJ sequences of bodies and obstacles, record.bin, diagnostics.csv, forces.csv on request, run.json.
 #pragma once
 
+#include "output/exporters/exporter.h"
 #include "output/obj_sequence.h"
 #include "output/output_folder.h"
 #include "output/run_checkpoint.h"
@@ -50,14 +51,19 @@ class RunOutput {
 
   [[nodiscard]] int frames_written() const { return progress_.frames_written; }
 
-  /// Writes the outcome of the run to run.json: `done`, `interrupted`, `diverged: ...`. Throws FileError.
+  /// Writes the outcome of the run to run.json: `done`, `interrupted`, `diverged: ...`. Then writes the formats that have one file
+  /// for all frames, from the record. Throws FileError.
   void finish(const std::string& outcome);
+
+  /// What the further formats cannot hold of this run, one line each. `tears`: springs may break.
+  [[nodiscard]] std::vector<std::string> losses(bool tears) const;
 
  private:
   /// Writes nothing yet.
   RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFolder folder);
 
   void write_summary();
+  void write_whole_files();
   void take_back_frames(const RunCheckpoint& to);
   [[nodiscard]] std::vector<std::string> patterns() const;
 
@@ -65,7 +71,9 @@ class RunOutput {
   std::vector<ObjSequence> sequences_;
   std::vector<CopiedFile> copies_;
   bool has_forces_;
-  std::optional<RunRecorder> recorder_;  ///< none without record.bin
+  std::optional<RunRecorder> recorder_;  ///< none without record.bin and further formats
+  bool has_record_;
+  std::vector<std::unique_ptr<Exporter>> exporters_;  ///< of the further formats
   RunSummary summary_;
   RunProgress progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -65,6 +65,8 @@ RunRecorder::RunRecorder(const Simulator& simulator, const ObjSources& sources, 
   model_.springs.ends.resize(Eigen::NoChange, springs.count());
   model_.springs.rest_lengths = springs.rest_length;
   model_.springs.kinds = springs.kind;
+  model_.springs.stiffness = springs.stiffness;
+  model_.springs.damping = springs.damping;
   for (Index s = 0; s < springs.count(); ++s) model_.springs.ends.col(s) << springs.first[s], springs.second[s];
 }
 

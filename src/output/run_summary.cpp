@@ -1,5 +1,8 @@
 #include "output/run_summary.h"
 
+#include "base/error.h"
+#include "base/files/file_writer.h"
+
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -125,6 +128,32 @@ std::optional<WrittenRun> written_run(const std::filesystem::path& run_summary) 
                     .frames_written = frames.is_number_integer() ? frames.get<int>() : 0,
                     .scene = scene.is_object() ? scene.dump() : std::string(),
                     .files = json["files"].get<std::vector<std::string>>()};
+}
+
+void add_files_to_run(const std::filesystem::path& folder, const std::vector<std::string>& patterns) {
+  const std::filesystem::path file = folder / kRunSummaryFile;
+  std::ifstream stream(file);
+  Json json = Json::parse(stream, nullptr, false);
+  if (!is_run_summary(json)) throw FileError("read", file.string(), "it is not the summary of a run");
+  bool is_new = false;
+  for (const std::string& pattern : patterns) {
+    if (std::ranges::find(json["files"], Json(pattern)) != json["files"].end()) continue;
+    json["files"].push_back(pattern);
+    json["exports"].push_back(pattern);
+    is_new = true;
+  }
+  if (is_new) write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::vector<std::string> exports_of_run(const std::filesystem::path& run_summary) {
+  std::ifstream stream(run_summary);
+  const Json json = Json::parse(stream, nullptr, false);
+  std::vector<std::string> patterns{kAnimationFile};
+  if (!is_run_summary(json) || !json.contains("exports") || !json["exports"].is_array()) return patterns;
+  for (const Json& pattern : json["exports"]) {
+    if (pattern.is_string()) patterns.push_back(pattern.get<std::string>());
+  }
+  return patterns;
 }
 
 std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_summary) {

@@ -34,12 +34,13 @@ struct RunFacts {
   std::optional<std::uint64_t> seed{};  ///< of the scene; none if nothing uses it
   std::vector<StepAdjustment> adjustments{};
   std::vector<std::string> warnings{};
-  ObjSources sources{};              ///< of bodies that are written as their files are
-  std::string scene_file{};          ///< name of the scene's file, without its folders; empty if there is none
-  BodyMaterials materials{};         ///< of bodies that have one
-  bool write_obj = true;             ///< whether frames are written as OBJ files
-  bool write_record = true;          ///< whether record.bin is written
-  double checkpoint_interval = 0.0;  ///< at most so often a checkpoint is written [s], wall time; 0: never
+  ObjSources sources{};                ///< of bodies that are written as their files are
+  std::string scene_file{};            ///< name of the scene's file, without its folders; empty if there is none
+  BodyMaterials materials{};           ///< of bodies that have one
+  bool write_obj = true;               ///< whether frames are written as OBJ files
+  bool write_record = true;            ///< whether record.bin is written
+  std::vector<std::string> formats{};  ///< further formats of the frames, of exporter_formats() without obj
+  double checkpoint_interval = 0.0;    ///< at most so often a checkpoint is written [s], wall time; 0: never
 };
 
 /// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.
@@ -112,5 +113,12 @@ struct WrittenRun {
 
 /// The patterns of a run's files from its run.json; nothing if the file cannot be read or is not a run.json of Sprung.
 [[nodiscard]] std::optional<std::vector<std::string>> files_of_run(const std::filesystem::path& run_summary);
+
+/// The patterns of the files that exports wrote into the folder of a run, which another export may replace.
+[[nodiscard]] std::vector<std::string> exports_of_run(const std::filesystem::path& run_summary);
+
+/// Adds patterns to the files of the run in a folder and to those of its exports, so that a run that replaces it removes what an
+/// export wrote there. Requires a folder with a run. Throws FileError.
+void add_files_to_run(const std::filesystem::path& folder, const std::vector<std::string>& patterns);
 
 }  // namespace sprung

@@ -49,7 +49,8 @@ TEST_F(CommandLine, WrongUsageEndsWithTwoAndSuggests) {
   refused({"run", scene, "--out", out(), "--frames", "many"}, "--frames");
   refused({"run", scene, "--out", out(), "--threads", "-1"}, "--threads");
   refused({"export", out()}, "--format is required: choose from html");
-  refused({"export", out(), "--format", "obj"}, "html");
+  refused({"export", out(), "--format", "fbx"}, "html");
+  refused({"export", out(), "--format", "npz,fbx"}, "usda");
 }
 
 TEST_F(CommandLine, NoCommandEndsWithTwoAndTheHelpOnStandardError) {

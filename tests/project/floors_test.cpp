@@ -71,6 +71,7 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"simulation/step", {"model", "settings"}},
 
     {"output/record", {}},
+    {"output/exporters", {"record"}},
 
     {"scene/format", {}},
     {"scene/json", {}},
@@ -94,6 +95,8 @@ const std::vector<Library> kLibraries = {
     {"nlohmann/", {"geometry", "scene", "output", "viewer"}},
     {"boost/", {"viewer"}},
     {"zlib.h", {"viewer"}, true},
+    {"zip.h", {"output"}, true},
+    {"tiny_gltf.h", {"output"}, true},
     {"CLI/", {"app"}},
     {"fmt/", {"app"}},
     {"sanitizer/", {"base"}},

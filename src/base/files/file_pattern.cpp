@@ -1,4 +1,4 @@
-#include "output/file_pattern.h"
+#include "base/files/file_pattern.h"
 
 #include <algorithm>
 
@@ -18,9 +18,9 @@ bool matches(const std::string& pattern, const std::string& name) {
 
 }  // namespace
 
-std::string sequence_pattern(const std::string& name, int frames) {
+std::string sequence_pattern(const std::string& name, int frames, const std::string& ending) {
   const int digits = std::max(kMinDigits, static_cast<int>(std::to_string(frames).size()));
-  return name + "." + std::string(static_cast<std::size_t>(digits), '#') + ".obj";
+  return name + "." + std::string(static_cast<std::size_t>(digits), '#') + ending;
 }
 
 std::string fill_pattern(const std::string& pattern, int frame) {

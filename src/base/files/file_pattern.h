@@ -7,8 +7,9 @@
 
 namespace sprung {
 
-/// `name.####.obj`, with as many `#` as the number of frames has digits, at least 4. File names then sort by frame number.
-[[nodiscard]] std::string sequence_pattern(const std::string& name, int frames);
+/// `name.####` and the ending, with as many `#` as the number of frames has digits, at least 4. File names then sort by frame
+/// number.
+[[nodiscard]] std::string sequence_pattern(const std::string& name, int frames, const std::string& ending = ".obj");
 
 /// The file name of a frame. Requires frame >= 0. A number with more digits than the pattern has `#` takes more room.
 [[nodiscard]] std::string fill_pattern(const std::string& pattern, int frame);

@@ -34,17 +34,11 @@ void append_faces(std::string& text, const PolygonFaces& faces) {
   }
 }
 
-// Edges that follow each other become one polyline.
+// An element for each edge: of a polyline, Blender 3.4 reads the first edge alone.
 void append_lines(std::string& text, const Edges& lines) {
-  for (Index e = 0; e < lines.cols(); ++e) {
-    if (e == 0 || lines(0, e) != lines(1, e - 1)) {
-      text += e == 0 ? "l " : "\nl ";
-      append_index(text, lines(0, e));
-    }
-    text += ' ';
-    append_index(text, lines(1, e));
+  for (Index e = 0; e < static_cast<Index>(lines.cols()); ++e) {
+    text.append("l ").append(std::to_string(lines(0, e) + 1)).append(" ").append(std::to_string(lines(1, e) + 1)).append("\n");
   }
-  if (lines.cols() > 0) text += '\n';
 }
 
 }  // namespace

@@ -74,6 +74,10 @@ ArrayBlock arrays_of(const RecordedModel& model) {
   std::vector<std::uint8_t> kinds;
   for (const SpringKind kind : model.springs.kinds) kinds.push_back(static_cast<std::uint8_t>(kind));
   block.add("springs/kinds", kinds);
+  if (!model.springs.stiffness.empty()) {
+    block.add("springs/stiffness", model.springs.stiffness);
+    block.add("springs/damping", model.springs.damping);
+  }
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
     const std::string name = obstacle_arrays(k);
     block.add(name + "vertices", model.obstacles[k].mesh.vertices);

@@ -182,6 +182,12 @@ void read_springs(const ArrayBlockReader& arrays, Index particles, RecordedSprin
   springs.ends = arrays.edges("springs/ends");
   if (!are_below(springs.ends, particles)) arrays.fail("springs/ends", "names particles that do not exist");
   springs.rest_lengths = arrays.numbers("springs/rest_lengths");
+  for (const auto& [name, values] :
+       {std::pair("springs/stiffness", &springs.stiffness), std::pair("springs/damping", &springs.damping)}) {
+    if (!arrays.has(name)) continue;  // of an older version
+    *values = arrays.numbers(name);
+    if (values->size() != static_cast<std::size_t>(springs.ends.cols())) arrays.fail(name, "does not fit the springs");
+  }
   const std::vector<std::uint8_t> kinds = arrays.bytes("springs/kinds");
   const auto count = static_cast<std::size_t>(springs.ends.cols());
   const bool finite = std::ranges::all_of(springs.rest_lengths, [](double length) { return std::isfinite(length); });

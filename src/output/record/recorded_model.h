@@ -33,6 +33,8 @@ struct RecordedSprings {
   Edges ends{2, 0};                    ///< particles, counted over all bodies
   std::vector<double> rest_lengths{};  ///< at time 0 [m]
   std::vector<SpringKind> kinds{};
+  std::vector<double> stiffness{};  ///< [N/m]; empty in records of versions before 0.2
+  std::vector<double> damping{};    ///< [N s/m]; likewise
 };
 
 struct RecordedPin {

@@ -1,4 +1,4 @@
-#include "output/file_pattern.h"
+#include "base/files/file_pattern.h"
 
 #include "base/scratch_folder.h"
 

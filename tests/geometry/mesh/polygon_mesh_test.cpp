@@ -157,10 +157,10 @@ TEST_F(ReadObj, RestoresAWrittenMeshBitForBit) {
   EXPECT_EQ(back.lines, mesh.lines);
 }
 
-TEST(ObjText, WritesARopeAsOnePolyline) {
+TEST(ObjText, WritesALineForEachEdge) {
   Edges lines(2, 3);
   lines << 0, 1, 5, 1, 2, 6;
-  EXPECT_EQ(obj_text(test::make_points({{0, 0.5, -1}}), {}, lines), "v 0 0.5 -1\nl 1 2 3\nl 6 7\n");
+  EXPECT_EQ(obj_text(test::make_points({{0, 0.5, -1}}), {}, lines), "v 0 0.5 -1\nl 1 2\nl 2 3\nl 6 7\n");
 }
 
 TEST(Triangulate, FansFromTheFirstCorner) {

@@ -1,0 +1,82 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/run_folder.h"
+#include "base/error.h"
+#include "base/files/file_pattern.h"
+#include "base/files/file_writer.h"
+#include "output/run_export.h"
+#include "output/run_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sprung {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kHtml = "html";
+
+/// Throws FileError if a file that the export writes is there or belongs to the run.
+void check_free(const fs::path& file, const ExportOptions& options) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) {
+    throw FileError("write", file.string(), "it is a folder, a pipe or a device; give another name by --out");
+  }
+  check_replaces_no_file_of_run(file, options.folder);
+  if (!options.overwrite && fs::exists(file, ignored)) {
+    throw FileError("write", file.string(), "it exists; replace it with --overwrite, or give another place by --out");
+  }
+}
+
+void check_free(const fs::path& out, const Exporter& exporter, const ExportOptions& options) {
+  for (const std::string& pattern : exporter.patterns()) {
+    check_free(out / fill_pattern(pattern, 1), options);
+    for (const fs::path& file : fs::is_directory(out) ? matching_files(out, pattern) : std::vector<fs::path>())
+      check_free(file, options);
+  }
+}
+
+/// Files that formats share, as the OBJ file of frame 1 of pc2 and mdd, are written twice with the same bytes.
+void export_with(const RecordedRun& run, Exporter& exporter, const fs::path& out) {
+  for (const std::string& loss : exporter.losses(!run.torn_faces().empty())) print_message(loss);
+  export_frames(run, exporter, [&](const ExportedFile& file) { write_file(out / file.path, file.bytes); });
+}
+
+}  // namespace
+
+ExitCode export_run(const ExportOptions& options) {
+  check_exists(options.folder);
+  const bool is_html_alone = options.formats.size() == 1 && options.formats.front() == kHtml;
+  const fs::path out = options.out.empty() ? fs::path(options.folder) : fs::path(options.out);
+  const fs::path html = is_html_alone && !options.out.empty() ? out : out / kAnimationFile;
+  const bool wants_html = std::ranges::find(options.formats, kHtml) != options.formats.end();
+  if (wants_html) check_free(html, options);
+  if (is_html_alone) {
+    export_html(options.folder, html);
+    return ExitCode::done;
+  }
+  const RecordedRun run(options.folder);
+  warn_of_missing(run);
+  std::vector<std::unique_ptr<Exporter>> exporters;
+  std::vector<std::string> patterns;
+  for (const std::string& format : exporter_formats()) {
+    if (std::ranges::find(options.formats, format) == options.formats.end()) continue;
+    exporters.push_back(make_exporter(format, exported_run(run)));
+    for (const std::string& pattern : exporters.back()->patterns()) patterns.push_back(pattern);
+    check_free(out, *exporters.back(), options);
+  }
+  std::error_code ignored;
+  if (fs::equivalent(out, options.folder, ignored)) add_files_to_run(options.folder, patterns);
+  for (const std::unique_ptr<Exporter>& exporter : exporters) export_with(run, *exporter, out);
+  if (wants_html) export_html(options.folder, html);
+  print_message(fmt::format("{} of {} are in {}", fmt::format("{} frames", run.frames()), run.title(), out.string()));
+  return ExitCode::done;
+}
+
+}  // namespace sprung
