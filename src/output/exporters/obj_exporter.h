@@ -1,24 +1,21 @@
 // OBJ from a record: a file for each body and frame.
 #pragma once
 
-#include "output/exporters/exported_shape.h"
+#include "output/exporters/sequence_exporter.h"
+
+#include <utility>
 
 namespace sprung {
 
 /// What a run writes by itself (`ObjSequence`), made from what the record knows: bodies that were read from OBJ files lose their
 /// comments, materials and normals.
-class ObjExporter final : public Exporter {
+class ObjExporter final : public SequenceExporter {
  public:
-  explicit ObjExporter(ExportedRun run);
-  [[nodiscard]] std::vector<std::string> patterns() const override;
+  explicit ObjExporter(ExportedRun run) : SequenceExporter(std::move(run), ".obj") {}
   [[nodiscard]] std::vector<std::string> losses(bool tears) const override;
-  [[nodiscard]] bool writes_each_frame() const override { return true; }
-  [[nodiscard]] std::vector<ExportedFile> frame(const ExportedFrame& frame) override;
-  [[nodiscard]] std::vector<ExportedFile> end(int /*frames*/) override { return {}; }
 
  private:
-  ExportedRun run_;
-  std::vector<ExportedShape> shapes_;
+  [[nodiscard]] std::string bytes_of(const ExportedShape& shape, const ExportedFrame& frame) const override;
 };
 
 }  // namespace sprung

@@ -1,18 +1,11 @@
 #include "output/exporters/ply_exporter.h"
 
-#include "base/files/file_pattern.h"
 #include "output/exporters/binary_text.h"
-
-#include <algorithm>
 
 namespace sprung {
 namespace {
 
 constexpr Index kMostCorners = 255;  // of a list whose length is a uchar
-
-std::string pattern_of(const ExportedShape& shape, int frames) {
-  return shape.changes ? sequence_pattern(shape.stem(), frames, ".ply") : shape.stem() + ".ply";
-}
 
 bool has_long_face(const PolygonFaces& faces) {
   for (Index f = 0; f < faces.face_count(); ++f) {
@@ -65,35 +58,18 @@ std::string head(std::size_t vertices, bool has_state, const PolygonFaces& faces
 
 }  // namespace
 
-PlyExporter::PlyExporter(ExportedRun run) : run_(std::move(run)), shapes_(shapes_of(run_.model)) {}
-
-std::vector<std::string> PlyExporter::patterns() const {
-  std::vector<std::string> patterns;
-  for (const ExportedShape& shape : shapes_) patterns.push_back(pattern_of(shape, run_.frames));
-  return patterns;
-}
-
 std::vector<std::string> PlyExporter::losses(bool /*tears*/) const {
-  if (!has_materials(run_.model) && !has_groups(run_.model)) return {};
+  if (!has_materials(run().model) && !has_groups(run().model)) return {};
   return {"PLY has no groups and no materials of faces"};
 }
 
-std::vector<ExportedFile> PlyExporter::frame(const ExportedFrame& frame) {
-  std::vector<ExportedFile> files;
-  for (const ExportedShape& shape : shapes_) {
-    if (!shape.changes && frame.number > 1) continue;
-    files.push_back({fill_pattern(pattern_of(shape, run_.frames), frame.number), text(shape, frame)});
-  }
-  return files;
-}
-
-std::string PlyExporter::text(const ExportedShape& shape, const ExportedFrame& frame) const {
-  const Points vertices = vertices_of(run_.model, shape, frame.state);
+std::string PlyExporter::bytes_of(const ExportedShape& shape, const ExportedFrame& frame) const {
+  const Points vertices = vertices_of(run().model, shape, frame.state);
   const PolygonFaces faces = faces_in(shape, frame);
   const bool is_body = shape.body != kNone;
   std::string bytes = head(static_cast<std::size_t>(vertices.cols()), is_body, faces, shape.lines);
   if (is_body) {
-    const VertexState state = vertex_state(run_.model, run_.model.bodies[shape.body], frame.state);
+    const VertexState state = vertex_state(run().model, run().model.bodies[shape.body], frame.state);
     for (Index i = 0; i < static_cast<Index>(vertices.cols()); ++i) {
       append_points<float>(bytes, vertices.col(i));
       append_points<float>(bytes, state.velocities.col(i));

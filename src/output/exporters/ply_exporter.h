@@ -1,26 +1,21 @@
 // PLY, Stanford's polygon format, binary and little-endian: a file for each body and frame.
 #pragma once
 
-#include "output/exporters/exported_shape.h"
+#include "output/exporters/sequence_exporter.h"
+
+#include <utility>
 
 namespace sprung {
 
 /// Vertices have x, y, z [m], those of bodies vx, vy, vz [m/s], stretch and contact too (see VertexState), all float but contact.
 /// Faces have `vertex_indices` and, with UVs, `texcoord`: u and v of each corner. Lines are `edge` elements.
-class PlyExporter final : public Exporter {
+class PlyExporter final : public SequenceExporter {
  public:
-  explicit PlyExporter(ExportedRun run);
-  [[nodiscard]] std::vector<std::string> patterns() const override;
+  explicit PlyExporter(ExportedRun run) : SequenceExporter(std::move(run), ".ply") {}
   [[nodiscard]] std::vector<std::string> losses(bool tears) const override;
-  [[nodiscard]] bool writes_each_frame() const override { return true; }
-  [[nodiscard]] std::vector<ExportedFile> frame(const ExportedFrame& frame) override;
-  [[nodiscard]] std::vector<ExportedFile> end(int /*frames*/) override { return {}; }
 
  private:
-  [[nodiscard]] std::string text(const ExportedShape& shape, const ExportedFrame& frame) const;
-
-  ExportedRun run_;
-  std::vector<ExportedShape> shapes_;
+  [[nodiscard]] std::string bytes_of(const ExportedShape& shape, const ExportedFrame& frame) const override;
 };
 
 }  // namespace sprung

@@ -13,10 +13,6 @@ namespace {
 constexpr std::uint8_t kBroken = 3;
 constexpr std::uint8_t kNoSpring = 4;
 
-std::string pattern_of(const ExportedShape& shape, int frames) {
-  return shape.changes ? sequence_pattern(shape.stem(), frames, ".vtp") : shape.stem() + ".vtp";
-}
-
 /// Arrays after the XML text: each begins with its size [bytes].
 class Appended {
  public:
@@ -98,12 +94,9 @@ SpringCells spring_cells(const RecordedModel& model, const RecordedBody& body, c
 
 }  // namespace
 
-VtkExporter::VtkExporter(ExportedRun run) : run_(std::move(run)), shapes_(shapes_of(run_.model)) {}
-
 std::vector<std::string> VtkExporter::patterns() const {
-  std::vector<std::string> patterns;
-  for (const ExportedShape& shape : shapes_) {
-    patterns.push_back(pattern_of(shape, run_.frames));
+  std::vector<std::string> patterns = SequenceExporter::patterns();
+  for (const ExportedShape& shape : shapes()) {
     if (shape.changes) patterns.push_back(shape.folder + shape.name + ".pvd");
   }
   return patterns;
@@ -111,27 +104,18 @@ std::vector<std::string> VtkExporter::patterns() const {
 
 std::vector<std::string> VtkExporter::losses(bool /*tears*/) const {
   const bool has_uvs =
-      std::ranges::any_of(run_.model.bodies, [](const RecordedBody& body) { return !body.faces.texcoord.empty(); });
-  if (!has_materials(run_.model) && !has_groups(run_.model) && !has_uvs) return {};
+      std::ranges::any_of(run().model.bodies, [](const RecordedBody& body) { return !body.faces.texcoord.empty(); });
+  if (!has_materials(run().model) && !has_groups(run().model) && !has_uvs) return {};
   return {"the VTK files have no UVs, no groups and no materials of faces"};
 }
 
-std::vector<ExportedFile> VtkExporter::frame(const ExportedFrame& frame) {
-  std::vector<ExportedFile> files;
-  for (const ExportedShape& shape : shapes_) {
-    if (!shape.changes && frame.number > 1) continue;
-    files.push_back({fill_pattern(pattern_of(shape, run_.frames), frame.number), text(shape, frame)});
-  }
-  return files;
-}
-
-std::string VtkExporter::text(const ExportedShape& shape, const ExportedFrame& frame) const {
-  const Points vertices = vertices_of(run_.model, shape, frame.state);
+std::string VtkExporter::bytes_of(const ExportedShape& shape, const ExportedFrame& frame) const {
+  const Points vertices = vertices_of(run().model, shape, frame.state);
   const PolygonFaces faces = faces_in(shape, frame);
   const bool is_body = shape.body != kNone;
   SpringCells lines;
-  if (is_body && vertices_are_particles(run_.model.bodies[shape.body])) {
-    lines = spring_cells(run_.model, run_.model.bodies[shape.body], frame.state);
+  if (is_body && vertices_are_particles(run().model.bodies[shape.body])) {
+    lines = spring_cells(run().model, run().model.bodies[shape.body], frame.state);
   } else {
     for (const Index end : shape.lines.reshaped()) lines.vertices.push_back(end);
     lines.tension.assign(static_cast<std::size_t>(shape.lines.cols()), 0.0F);
@@ -145,7 +129,7 @@ std::string VtkExporter::text(const ExportedShape& shape, const ExportedFrame& f
   arrays.add("Points", vertices);
   arrays.close_element("Points");
   if (is_body) {
-    const VertexState state = vertex_state(run_.model, run_.model.bodies[shape.body], frame.state);
+    const VertexState state = vertex_state(run().model, run().model.bodies[shape.body], frame.state);
     arrays.open_element("PointData");
     arrays.add("velocity", state.velocities);
     arrays.add("Float32", "stretch", 1, state.stretch);
@@ -177,14 +161,14 @@ std::string VtkExporter::text(const ExportedShape& shape, const ExportedFrame& f
 
 std::vector<ExportedFile> VtkExporter::end(int frames) {
   std::vector<ExportedFile> files;
-  for (const ExportedShape& shape : shapes_) {
+  for (const ExportedShape& shape : shapes()) {
     if (!shape.changes) continue;
     std::string text =
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
     for (int frame = 1; frame <= frames; ++frame) {
       text += "<DataSet timestep=\"";
-      append_number(text, (frame - 1) / run_.frame_rate);
-      const std::string file = fill_pattern(pattern_of(shape, run_.frames), frame);
+      append_number(text, (frame - 1) / run().frame_rate);
+      const std::string file = fill_pattern(pattern_of(shape), frame);
       text.append("\" part=\"0\" file=\"").append(file.substr(shape.folder.size())).append("\"/>\n");
     }
     files.push_back({shape.folder + shape.name + ".pvd", text + "</Collection>\n</VTKFile>\n"});

@@ -45,12 +45,14 @@ struct StepTrial {
 /// - Deformation: global solves satisfy the limit at any step, but their projection damps motion in proportion to the deformation
 ///   in a substep. Each substep deforms or rotates a body by at most 1/70 (see StretchLimit::deformation).
 /// - Rotation: no obstacle or pin rotates by more than 45 degrees in a contact step.
-/// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the contact steps until there are none: a long
+/// - Infeasible: a step with infeasible particles is repeated with 4, 16 and 64 times the contact steps until there are none: a
+/// long
 ///   step can miss an admissible position near a pin or before a fast obstacle. An attempt that does not halve the number
 ///   of infeasible particles is abandoned, because it could take hundreds of times longer. After a repetition without effect, no
 ///   step is repeated for a waiting time, which doubles each time and ends after enough feasible steps. A step with more infeasible
 ///   particles than any during the wait is repeated nevertheless, as its cause may be another.
-/// - Strain: where truncation strained a spring by more than a tenth, a step of inner substeps is repeated with 4, then 16 times the
+/// - Strain: where truncation strained a spring by more than a tenth, a step of inner substeps is repeated with 4, then 16 times
+/// the
 ///   contact steps, up to one for each inner substep. The strain would become speed.
 /// - Solver trial: a body whose solver missed the limit in several steps in a row tries the other solver on the same step, and
 ///   keeps it if it leaves less excess. Newton's method costs more, so it must leave at most four fifths of the
