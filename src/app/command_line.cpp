@@ -29,6 +29,7 @@ constexpr const char* kExamples = R"(Examples:
   sprung view frames
   sprung export frames --format html
   sprung export frames --format gltf,npz --out elsewhere
+  sprung plot frames others --out compared.svg
   sprung materials cotton
 
 Meshes are searched beside the scene file (by info: where you are), in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
@@ -48,6 +49,7 @@ class Parser {
     add_info();
     add_view();
     add_export();
+    add_plot();
     add_materials();
     add_help();
   }
@@ -73,6 +75,7 @@ class Parser {
       }
       return export_;
     }
+    if (app_.got_subcommand("plot")) return plot_;
     if (app_.got_subcommand("materials")) return materials_;
     if (app_.got_subcommand("help")) return help_of_.empty() ? PrintOptions{help_of_all} : help_of_command();
     return info_;
@@ -155,6 +158,14 @@ class Parser {
         ->type_name("PATH");
     command->add_option("--mesh-path", unused_mesh_paths_)->group("");  // hidden: an export needed meshes once
     command->add_flag("--overwrite", export_.overwrite, "Replace files that exist");
+  }
+
+  void add_plot() {
+    CLI::App* command = app_.add_subcommand("plot", "Draws energies, stretch, contacts and time a frame of runs");
+    command->add_option("DIR", plot_.folders, "Folders of runs; several are drawn over each other")->required()->type_name("");
+    command->add_option("--out", plot_.out, "Picture to write, .png or .svg; diagnostics.png in the first folder by default")
+        ->type_name("FILE");
+    command->add_flag("--overwrite", plot_.overwrite, "Replace the file if it exists");
   }
 
   void add_materials() {
@@ -250,6 +261,7 @@ class Parser {
   InfoOptions info_;
   ViewOptions view_;
   ExportOptions export_;
+  PlotOptions plot_;
   std::vector<std::string> unused_mesh_paths_;
   MaterialsOptions materials_;
   std::string help_of_;

@@ -48,6 +48,12 @@ struct ExportOptions {
   bool overwrite = false;
 };
 
+struct PlotOptions {
+  std::vector<std::string> folders;  ///< of runs
+  std::string out;                   ///< empty: diagnostics.png in the folder of the first run
+  bool overwrite = false;
+};
+
 struct MaterialsOptions {
   std::string name;  ///< empty: all
 };
@@ -58,7 +64,8 @@ struct PrintOptions {
   bool is_usage_error = false;  ///< there was no command: the text goes to standard error
 };
 
-using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, MaterialsOptions, PrintOptions>;
+using Command =
+    std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, PlotOptions, MaterialsOptions, PrintOptions>;
 
 /// An invalid command line; one problem per line.
 class UsageError : public std::runtime_error {

@@ -26,6 +26,10 @@ ExitCode view(const ViewOptions& options);
 /// written.
 ExitCode export_run(const ExportOptions& options);
 
+/// Draws the diagnostics of runs by gnuplot. Throws UsageError for an unknown kind of picture, InputError if a folder is no run,
+/// FileError without gnuplot, or if the picture cannot be written.
+ExitCode plot(const PlotOptions& options);
+
 /// Writes a run as one HTML file. Throws InputError if the folder is no run, and in a program that was built without the viewer;
 /// FileError if the file cannot be written.
 void export_html(const std::string& folder, const std::filesystem::path& file);

@@ -22,6 +22,7 @@ struct Execute {
   ExitCode operator()(const InfoOptions& options) const { return info(options); }
   ExitCode operator()(const ViewOptions& options) const { return view(options); }
   ExitCode operator()(const ExportOptions& options) const { return export_run(options); }
+  ExitCode operator()(const PlotOptions& options) const { return plot(options); }
   ExitCode operator()(const MaterialsOptions& options) const { return print_materials(options); }
   ExitCode operator()(const PrintOptions& options) const { return print(options); }
 };
