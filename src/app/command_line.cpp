@@ -66,6 +66,8 @@ class Parser {
     } catch (const CLI::ParseError& error) {
       throw UsageError(explain(error));
     }
+    check_formats(run_.formats);
+    check_formats(export_.formats);
     if (app_.got_subcommand("run")) return run_;
     if (app_.got_subcommand("validate")) return validate_;
     if (app_.got_subcommand("view")) return view_;
@@ -184,6 +186,12 @@ class Parser {
       if (command->get_name() == help_of_) return PrintOptions{command->help(app_.get_name())};
     }
     throw UsageError(unexpected(help_of_, app_) + "see sprung --help");
+  }
+
+  static void check_formats(const std::vector<std::string>& formats) {
+    const auto has = [&](const char* name) { return std::ranges::find(formats, name) != formats.end(); };
+    if (has("npz") && has("npz64"))
+      throw UsageError("--format npz and npz64 write the same file; leave out one; see sprung --help");
   }
 
   static std::vector<std::string> export_formats() {

@@ -1,9 +1,11 @@
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/interrupt.h"
 #include "app/run_folder.h"
 #include "base/error.h"
 #include "base/files/file_pattern.h"
 #include "base/files/file_writer.h"
+#include "output/output_folder.h"
 #include "output/run_export.h"
 #include "output/run_summary.h"
 
@@ -12,7 +14,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace sprung {
@@ -34,18 +38,58 @@ void check_free(const fs::path& file, const ExportOptions& options) {
   }
 }
 
-void check_free(const fs::path& out, const Exporter& exporter, const ExportOptions& options) {
-  for (const std::string& pattern : exporter.patterns()) {
-    check_free(out / fill_pattern(pattern, 1), options);
-    for (const fs::path& file : fs::is_directory(out) ? matching_files(out, pattern) : std::vector<fs::path>())
-      check_free(file, options);
+/// Existing files of an export in a folder.
+std::vector<fs::path> files_in(const fs::path& out, const std::string& pattern) {
+  std::error_code error;
+  if (!fs::is_directory(out, error)) return {};
+  try {
+    return matching_files(out, pattern);
+  } catch (const fs::filesystem_error& failure) {
+    throw FileError("read", out.string(), failure.code().message());
   }
 }
 
-/// Files that formats share, as the OBJ file of frame 1 of pc2 and mdd, are written twice with the same bytes.
-void export_with(const RecordedRun& run, Exporter& exporter, const fs::path& out) {
+void check_free(const fs::path& out, const Exporter& exporter, const ExportOptions& options) {
+  for (const std::string& pattern : exporter.patterns()) {
+    check_free(out / fill_pattern(pattern, 1), options);
+    for (const fs::path& file : files_in(out, pattern)) check_free(file, options);
+  }
+}
+
+/// Files of an export that ends early, which are removed.
+class Unfinished {
+ public:
+  Unfinished() = default;
+  ~Unfinished() {
+    std::error_code ignored;
+    for (const fs::path& file : files_) fs::remove(file, ignored);
+  }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+  void add(const fs::path& file) { files_.push_back(file); }
+  void keep() { files_.clear(); }
+
+ private:
+  std::vector<fs::path> files_;
+};
+
+/// The user interrupts an export.
+struct Interrupted {};
+
+/// Files that formats share, as the OBJ file of frame 1 of pc2 and mdd, are written twice with the same bytes. Frames of a longer
+/// export that is replaced are removed.
+void export_with(const RecordedRun& run, Exporter& exporter, const fs::path& out, Unfinished& unfinished) {
   for (const std::string& loss : exporter.losses(!run.torn_faces().empty())) print_message(loss);
-  export_frames(run, exporter, [&](const ExportedFile& file) { write_file(out / file.path, file.bytes); });
+  for (const std::string& pattern : exporter.patterns()) {
+    std::error_code ignored;
+    for (const fs::path& file : files_in(out, pattern)) fs::remove(file, ignored);
+  }
+  export_frames(run, exporter, [&](const ExportedFile& file) {
+    if (interrupted()) throw Interrupted{};
+    write_file(out / file.path, file.bytes);
+    unfinished.add(out / file.path);
+  });
 }
 
 }  // namespace
@@ -72,8 +116,19 @@ ExitCode export_run(const ExportOptions& options) {
     check_free(out, *exporters.back(), options);
   }
   std::error_code ignored;
-  if (fs::equivalent(out, options.folder, ignored)) add_files_to_run(options.folder, patterns);
-  for (const std::unique_ptr<Exporter>& exporter : exporters) export_with(run, *exporter, out);
+  std::optional<OutputFolder> locked;  // no run writes into it meanwhile
+  if (fs::equivalent(out, options.folder, ignored)) {
+    locked.emplace(OutputFolder::as_it_is(options.folder));
+    add_files_to_run(options.folder, patterns);
+  }
+  Unfinished unfinished;
+  try {
+    for (const std::unique_ptr<Exporter>& exporter : exporters) export_with(run, *exporter, out, unfinished);
+  } catch (const Interrupted&) {
+    print_message("interrupted; the files of the export were removed");
+    return ExitCode::interrupted;
+  }
+  unfinished.keep();
   if (wants_html) export_html(options.folder, html);
   print_message(fmt::format("{} of {} are in {}", fmt::format("{} frames", run.frames()), run.title(), out.string()));
   return ExitCode::done;

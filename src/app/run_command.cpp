@@ -203,8 +203,9 @@ ExitCode run(const RunOptions& options) {
   const RunFacts facts = facts_of(loaded, options, threads);
   const ResumePoint point = options.resume ? find_resume_point(folder, facts, loaded.simulator) : ResumePoint();
   if (point.is_complete) {
-    print_message(fmt::format("{} has {} of the {} that are asked for; nothing is left to do", options.out,
-                              counted(point.frames_written, "frame"), loaded.frames));
+    print_message(
+        fmt::format("{} has {} of the {} that are asked for; nothing is left to do (sprung export writes further formats)",
+                    options.out, counted(point.frames_written, "frame"), loaded.frames));
     return ExitCode::done;
   }
   std::string memory;

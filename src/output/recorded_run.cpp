@@ -178,6 +178,11 @@ void RecordedRun::read_obj_model(const std::vector<std::string>& patterns) {
   RecordedModel& model = model_of_obj_;
   for (const std::string& pattern : patterns) {
     if (!pattern.ends_with(".obj")) continue;
+    const auto has_beside = [&](const char* ending) {
+      const std::string name = pattern.substr(0, pattern.size() - std::string(".obj").size()) + ending;
+      return std::ranges::find(patterns, name) != patterns.end();
+    };
+    if (has_beside(".pc2") || has_beside(".mdd")) continue;  // the first frame, beside a point cache
     const bool is_obstacle = pattern.starts_with(kObstacles);
     const bool changes = has_a_file_per_frame(pattern);
     if (!stays_inside(pattern)) fail(folder_ / kRunSummaryFile, "files", "lead out of the folder: " + pattern);

@@ -25,6 +25,9 @@ namespace {
 
 constexpr const char* kForcesFile = "forces.csv";
 
+// How the outcome of a run begins whose files could not be written.
+constexpr const char* kFailed = "failed";
+
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -100,6 +103,7 @@ RunOutput::RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFo
       has_forces_(simulator.settings().record_forces),
       recorder_(recorder_of(simulator, facts)),
       has_record_(facts.write_record),
+      formats_(facts.formats),
       exporters_(exporters_of(facts, recorder_)),
       summary_(facts, simulator.settings().step, patterns()),
       checkpoint_interval_(facts.checkpoint_interval) {}
@@ -139,6 +143,7 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
          " is shorter than it was at the checkpoint, so frames are missing; run the scene again with --overwrite");
   }
   if (has_record_) summary_.set_record(fingerprint(encode_head(recorder_->model(), recorder_->frame(simulator))));
+  summary_.set_exports(exports_of_run(folder_.path() / kRunSummaryFile));
   identity_ = std::move(run.identity);
   monitor = std::move(run.monitor);
   progress_ = run.progress;
@@ -273,21 +278,23 @@ std::string RunOutput::write_checkpoint_now(const Simulator& simulator, const st
 }
 
 void RunOutput::finish(const std::string& outcome) {
+  // Whoever kills the program here finds a run that has not ended, which --resume ends.
+  if (progress_.frames_written > 0 && !outcome.starts_with(kFailed)) write_whole_files();
   progress_.outcome = outcome;
   write_summary();
-  if (progress_.frames_written > 0) write_whole_files();
 }
 
+/// Each gets a new exporter, which knows how many frames there are.
 void RunOutput::write_whole_files() {
   const auto write = [this](const ExportedFile& file) { folder_.write(file.path, file.bytes); };
   std::optional<RecordedRun> run;
-  for (const std::unique_ptr<Exporter>& exporter : exporters_) {
-    if (exporter->writes_each_frame()) {
-      std::ranges::for_each(exporter->end(progress_.frames_written), write);
+  for (std::size_t k = 0; k < exporters_.size(); ++k) {
+    if (exporters_[k]->writes_each_frame()) {
+      std::ranges::for_each(exporters_[k]->end(progress_.frames_written), write);
       continue;
     }
     if (!run) run.emplace(folder_.path());
-    export_frames(*run, *exporter, write);
+    export_frames(*run, *make_exporter(formats_[k], exported_run(*run)), write);
   }
 }
 

@@ -51,8 +51,8 @@ class RunOutput {
 
   [[nodiscard]] int frames_written() const { return progress_.frames_written; }
 
-  /// Writes the outcome of the run to run.json: `done`, `interrupted`, `diverged: ...`. Then writes the formats that have one file
-  /// for all frames, from the record. Throws FileError.
+  /// Writes the formats that have one file for all frames, from the record; then the outcome of the run to run.json: `done`,
+  /// `interrupted`, `diverged: ...`. After `failed: ...` no format is written. Throws FileError.
   void finish(const std::string& outcome);
 
   /// What the further formats cannot hold of this run, one line each. `tears`: springs may break.
@@ -73,7 +73,8 @@ class RunOutput {
   bool has_forces_;
   std::optional<RunRecorder> recorder_;  ///< none without record.bin and further formats
   bool has_record_;
-  std::vector<std::unique_ptr<Exporter>> exporters_;  ///< of the further formats
+  std::vector<std::string> formats_;                  ///< further ones
+  std::vector<std::unique_ptr<Exporter>> exporters_;  ///< of these formats
   RunSummary summary_;
   RunProgress progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

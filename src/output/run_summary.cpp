@@ -83,6 +83,15 @@ RunSummary::RunSummary(RunSummary&&) noexcept = default;
 
 void RunSummary::set_record(const std::string& fingerprint) { document_->json["record"] = fingerprint; }
 
+void RunSummary::set_exports(const std::vector<std::string>& patterns) {
+  Json& json = document_->json;
+  for (const std::string& pattern : patterns) {
+    if (std::ranges::find(json["files"], Json(pattern)) != json["files"].end()) continue;
+    json["files"].push_back(pattern);
+    json["exports"].push_back(pattern);
+  }
+}
+
 std::string RunSummary::text(const RunProgress& progress) const {
   Json& json = document_->json;
   json["outcome"] = progress.outcome;
@@ -135,6 +144,7 @@ void add_files_to_run(const std::filesystem::path& folder, const std::vector<std
   std::ifstream stream(file);
   Json json = Json::parse(stream, nullptr, false);
   if (!is_run_summary(json)) throw FileError("read", file.string(), "it is not the summary of a run");
+  if (!json.contains("exports") || !json["exports"].is_array()) json["exports"] = Json::array();
   bool is_new = false;
   for (const std::string& pattern : patterns) {
     if (std::ranges::find(json["files"], Json(pattern)) != json["files"].end()) continue;

@@ -93,6 +93,9 @@ class RunSummary {
   /// Says which record.bin belongs to the run (see fingerprint()).
   void set_record(const std::string& fingerprint);
 
+  /// Keeps the files of exports into the run's folder, by their patterns.
+  void set_exports(const std::vector<std::string>& patterns);
+
   [[nodiscard]] std::string text(const RunProgress& progress) const;
 
  private:

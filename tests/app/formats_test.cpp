@@ -62,6 +62,33 @@ TEST_F(CommandLine, AnExportReplacesExportsAloneAndOnlyIfAsked) {
   EXPECT_EQ(read_text(out("elsewhere") + "/rope/rope.0001.obj"), frame);
 }
 
+TEST_F(CommandLine, ARunThatGoesOnRemembersItsExports) {
+  const std::string file = save(rope_scene());
+  ASSERT_EQ(run({"run", file, "--out", out(), "--frames", "2", "--format", "none"}).code, 0);
+  ASSERT_EQ(run({"export", out(), "--format", "gltf,pc2"}).code, 0);
+  ASSERT_EQ(run({"run", file, "--out", out(), "--frames", "4", "--format", "none", "--resume"}).code, 0);
+  EXPECT_EQ(run({"export", out(), "--format", "gltf,pc2", "--overwrite"}).code, 0);
+  EXPECT_EQ(run({"run", file, "--out", out(), "--frames", "2", "--format", "pc2", "--overwrite"}).code, 0);
+  EXPECT_THAT(listing(out()), AllOf(IsSupersetOf({"rope.pc2", "rope.obj"}), Not(::testing::Contains("animation.glb"))));
+}
+
+TEST_F(CommandLine, AnExportLeavesNoFramesOfALongerOne) {
+  const std::string file = save(rope_scene());
+  ASSERT_EQ(run({"run", file, "--out", out(), "--frames", "4", "--format", "none"}).code, 0);
+  ASSERT_EQ(run({"run", file, "--out", out("short"), "--frames", "2", "--format", "none"}).code, 0);
+  ASSERT_EQ(run({"export", out(), "--format", "ply", "--out", out("files")}).code, 0);
+  ASSERT_EQ(run({"export", out("short"), "--format", "ply", "--out", out("files"), "--overwrite"}).code, 0);
+  EXPECT_THAT(listing(out("files")),
+              AllOf(::testing::Contains("rope/rope.0002.ply"), Not(::testing::Contains("rope/rope.0003.ply"))));
+}
+
+// record.bin can be removed: then the OBJ frames are read, and not the first frame that lies beside a point cache.
+TEST_F(CommandLine, ARunWithoutItsRecordIsReadFromItsFrames) {
+  ASSERT_EQ(run({"run", save(rope_scene()), "--out", out(), "--frames", "2", "--format", "obj,pc2"}).code, 0);
+  std::filesystem::remove(out() + "/record.bin");
+  EXPECT_EQ(run({"export", out(), "--format", "npz", "--out", out("elsewhere")}).code, 0);
+}
+
 TEST_F(CommandLine, FormatsThatNeedTheRecordAreRefusedWithoutIt) {
   const Ending ending = run({"run", save(rope_scene()), "--out", out(), "--format", "obj,npz", "--set", "output.record=false"});
   EXPECT_EQ(ending.code, 2);
@@ -70,6 +97,7 @@ TEST_F(CommandLine, FormatsThatNeedTheRecordAreRefusedWithoutIt) {
   EXPECT_EQ(
       run({"run", save(rope_scene()), "--out", out(), "--frames", "2", "--format", "ply", "--set", "output.record=false"}).code, 0);
   EXPECT_EQ(run({"run", save(rope_scene()), "--out", out("two"), "--format", "none,obj"}).code, 2);
+  EXPECT_EQ(run({"run", save(rope_scene()), "--out", out("two"), "--format", "npz,npz64"}).code, 2);
 }
 
 TEST_F(CommandLine, PlotDrawsOneRunOrSeveral) {

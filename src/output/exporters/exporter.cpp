@@ -23,27 +23,27 @@ Make maker(Arguments... arguments) {
 
 /// The one place where a format is listed.
 const std::vector<std::pair<std::string, Make>>& makers() {
-  static const std::vector<std::pair<std::string, Make>> all{{"obj", maker<ObjExporter>()},
-                                                             {"ply", maker<PlyExporter>()},
-                                                             {"pc2", maker<PointCacheExporter>(PointCacheExporter::Format::pc2)},
-                                                             {"mdd", maker<PointCacheExporter>(PointCacheExporter::Format::mdd)},
-                                                             {"vtk", maker<VtkExporter>()},
-                                                             {"gltf", maker<GltfExporter>()},
-                                                             {"npz", maker<NpzExporter>(NpzExporter::Precision::float32)},
-                                                             {"npz64", maker<NpzExporter>(NpzExporter::Precision::float64)},
-                                                             {"usda", maker<UsdExporter>()}};
-  return all;
+  static const std::vector<std::pair<std::string, Make>> kAll{{"obj", maker<ObjExporter>()},
+                                                              {"ply", maker<PlyExporter>()},
+                                                              {"pc2", maker<PointCacheExporter>(PointCacheExporter::Format::pc2)},
+                                                              {"mdd", maker<PointCacheExporter>(PointCacheExporter::Format::mdd)},
+                                                              {"vtk", maker<VtkExporter>()},
+                                                              {"gltf", maker<GltfExporter>()},
+                                                              {"npz", maker<NpzExporter>(NpzExporter::Precision::float32)},
+                                                              {"npz64", maker<NpzExporter>(NpzExporter::Precision::float64)},
+                                                              {"usda", maker<UsdExporter>()}};
+  return kAll;
 }
 
 }  // namespace
 
 const std::vector<std::string>& exporter_formats() {
-  static const std::vector<std::string> names = [] {
+  static const std::vector<std::string> kNames = [] {
     std::vector<std::string> all;
     for (const auto& [name, make] : makers()) all.push_back(name);
     return all;
   }();
-  return names;
+  return kNames;
 }
 
 std::unique_ptr<Exporter> make_exporter(const std::string& format, ExportedRun run) {

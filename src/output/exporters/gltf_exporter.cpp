@@ -14,7 +14,7 @@
 namespace sprung {
 namespace {
 
-constexpr int kMostTargets = 256;
+constexpr int kMostTargets = 256;  // with the last frame
 constexpr double kMostBytes = 100.0e6;
 constexpr std::size_t kAlignment = 4;
 
@@ -199,7 +199,7 @@ GltfExporter::GltfExporter(ExportedRun run)
 /// Every so many frames are targets.
 int GltfExporter::interval(Index vertices) const {
   const double room = kMostBytes / (3.0 * sizeof(float) * std::max(vertices, Index{1}));
-  const int most = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(kMostTargets)));
+  const int most = static_cast<int>(std::clamp(room - 1.0, 1.0, kMostTargets - 1.0));
   return std::max(1, (run_.frames - 1 + most - 1) / most);
 }
 
@@ -231,7 +231,8 @@ std::vector<ExportedFile> GltfExporter::frame(const ExportedFrame& frame) {
     }
     if (motion == ObstacleMotion::fixed && frame.number > 1) continue;
     const Points vertices = vertices_of(run_.model, shape, frame.state);
-    if ((frame.number - 1) % interval(static_cast<Index>(vertices.cols())) != 0) continue;
+    const bool is_target = (frame.number - 1) % interval(static_cast<Index>(vertices.cols())) == 0;
+    if (!is_target && frame.number != run_.frames) continue;
     targets_[k].push_back(vertices.cast<float>());
     target_times_[k].push_back(times_.back());
   }
@@ -284,7 +285,7 @@ std::vector<ExportedFile> GltfExporter::end(int /*frames*/) {
     }
     std::vector<std::uint32_t> ends;
     for (const Index end : shape.lines.reshaped()) ends.push_back(static_cast<std::uint32_t>(end));
-    add_primitive(ends, TINYGLTF_MODE_LINE, builder.add_material(shape.name + " lines", is_body));
+    if (!ends.empty()) add_primitive(ends, TINYGLTF_MODE_LINE, builder.add_material(shape.name + " lines", is_body));
     if (mesh.primitives.empty()) continue;
     mesh.weights.assign(targets.size(), 0.0);
     const int node = builder.add_node(shape.name, std::move(mesh));

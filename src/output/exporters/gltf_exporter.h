@@ -6,9 +6,9 @@
 namespace sprung {
 
 /// `animation.glb`. Each body is a node with a mesh: the vertices of frame 1, a morph target for each other frame, and an animation
-/// of the weights. A body has at most 256 targets and 100 MB of them; where the run has more frames, every k-th one is a target.
-/// Vertices keep their order; a vertex whose corners have several UVs has copies after all others. Faces of one material are a
-/// primitive. Lines are primitives of lines. Rigid obstacles are animated nodes; deforming ones are as bodies.
+/// of the weights. A body has at most 256 targets and 100 MB of them; where the run has more frames, every k-th one and the last
+/// are targets. Vertices keep their order; a vertex whose corners have several UVs has copies after all others. Faces of one
+/// material are a primitive. Lines are primitives of lines. Rigid obstacles are animated nodes; deforming ones are as bodies.
 class GltfExporter final : public Exporter {
  public:
   explicit GltfExporter(ExportedRun run);

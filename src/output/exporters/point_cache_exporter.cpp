@@ -17,8 +17,9 @@ PointCacheExporter::PointCacheExporter(ExportedRun run, Format format)
 std::vector<std::string> PointCacheExporter::patterns() const {
   std::vector<std::string> patterns;
   for (const ExportedShape& shape : shapes_) {
+    if (!shape.changes) continue;
     patterns.push_back(shape.folder + shape.name + ".obj");
-    if (shape.changes) patterns.push_back(shape.folder + shape.name + ending());
+    patterns.push_back(shape.folder + shape.name + ending());
   }
   return patterns;
 }
@@ -39,10 +40,10 @@ std::vector<ExportedFile> PointCacheExporter::frame(const ExportedFrame& frame) 
   times_.push_back(frame.state.time);
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const ExportedShape& shape = shapes_[k];
-    if (!shape.changes && frame.number > 1) continue;
+    if (!shape.changes) continue;
     const Points vertices = vertices_of(run_.model, shape, frame.state);
     if (frame.number == 1) files.push_back({shape.folder + shape.name + ".obj", obj_text(vertices, shape.faces, shape.lines)});
-    if (shape.changes) append_points<float>(samples_[k], vertices, order);
+    append_points<float>(samples_[k], vertices, order);
   }
   return files;
 }

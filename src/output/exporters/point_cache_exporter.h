@@ -11,6 +11,7 @@ namespace sprung {
 /// number of samples, then x, y, z of each point as float. MDD is big-endian: numbers of frames and points, the time of each frame
 /// [s] as float, then the same coordinates. Programs such as Blender (modifier Mesh Cache) lay them over a mesh of the same vertex
 /// order.
+/// Obstacles that do not move have no file.
 class PointCacheExporter final : public Exporter {
  public:
   enum class Format : std::uint8_t { pc2, mdd };

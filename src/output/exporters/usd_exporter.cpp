@@ -6,10 +6,14 @@
 #include <cctype>
 #include <charconv>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace sprung {
 namespace {
+
+// What the name of a body's lines has more than that of its faces.
+constexpr const char* kLines = "_lines";
 
 void append_float(std::string& text, double value) {
   std::array<char, 32> digits{};
@@ -63,9 +67,12 @@ std::string subsets(const std::vector<std::string>& names, const std::vector<Ind
   std::map<std::string, std::vector<Index>> faces_of;  // of each name
   for (std::size_t k = 0; k < names.size(); ++k) {
     const Index end = k + 1 < begins.size() ? begins[k + 1] : faces;
-    for (Index f = begins[k]; f < end; ++f) faces_of[prim_name(names[k])].push_back(f);
+    for (Index f = begins[k]; f < end; ++f) faces_of[names[k]].push_back(f);
   }
-  for (const auto& [name, numbers] : faces_of) {
+  std::set<std::string> taken;
+  for (const auto& [given, numbers] : faces_of) {
+    std::string name = prim_name(given);
+    while (!taken.insert(name).second) name += '_';
     text.append("        def GeomSubset \"").append(family).append("_").append(name).append("\"\n        {\n");
     text.append("            uniform token elementType = \"face\"\n            uniform token familyName = \"").append(family);
     text.append("\"\n            int[] indices = ").append(list(numbers)).append("\n        }\n");
@@ -139,8 +146,7 @@ std::vector<ExportedFile> UsdExporter::frame(const ExportedFrame& frame) {
   return {};
 }
 
-std::string UsdExporter::mesh_text(const ExportedShape& shape, const Samples& samples) const {
-  const std::string name = prim_name(shape.body == kNone ? "obstacle_" + shape.name : shape.name);
+std::string UsdExporter::mesh_text(const std::string& name, const ExportedShape& shape, const Samples& samples) const {
   std::string text;
   if (shape.faces.face_count() > 0) {
     text.append("    def Mesh \"").append(name).append("\"\n    {\n        uniform token subdivisionScheme = \"none\"\n");
@@ -163,7 +169,7 @@ std::string UsdExporter::mesh_text(const ExportedShape& shape, const Samples& sa
     text += "    }\n";
   }
   if (shape.lines.cols() > 0) {
-    text.append("    def BasisCurves \"").append(name).append(shape.faces.face_count() > 0 ? "_lines" : "").append("\"\n    {\n");
+    text.append("    def BasisCurves \"").append(name).append(shape.faces.face_count() > 0 ? kLines : "").append("\"\n    {\n");
     text += "        uniform token type = \"linear\"\n        int[] curveVertexCounts = ";
     text += list(std::vector<int>(static_cast<std::size_t>(shape.lines.cols()), 2)) + "\n" +
             attribute("point3f[] points", samples.curves);
@@ -180,7 +186,13 @@ std::vector<ExportedFile> UsdExporter::end(int frames) {
   text += "\n    framesPerSecond = ";
   append_number(text, run_.frame_rate);
   text += "\n)\n\ndef Xform \"sprung\"\n{\n";
-  for (std::size_t k = 0; k < shapes_.size(); ++k) text += mesh_text(shapes_[k], samples_[k]);
+  std::set<std::string> taken;
+  for (std::size_t k = 0; k < shapes_.size(); ++k) {
+    std::string name = prim_name(shapes_[k].body == kNone ? "obstacle_" + shapes_[k].name : shapes_[k].name);
+    while (taken.contains(name) || taken.contains(name + kLines)) name += '_';
+    taken.insert({name, name + kLines});
+    text += mesh_text(name, shapes_[k], samples_[k]);
+  }
   return {{"animation.usda", text + "}\n"}};
 }
 

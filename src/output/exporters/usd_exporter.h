@@ -9,6 +9,7 @@ namespace sprung {
 /// points (float) and, where faces tear, of the faces; UVs are `primvars:st`, groups and materials of faces are `GeomSubset` prims.
 /// Lines are `BasisCurves`, a curve for each line. Obstacles are `Mesh` prims: fixed ones as they stand, rigid ones with time
 /// samples of their transform, deforming ones of their points.
+/// Of names `-` becomes `_`, with another `_` at the end where two would be equal.
 class UsdExporter final : public Exporter {
  public:
   explicit UsdExporter(ExportedRun run);
@@ -30,7 +31,7 @@ class UsdExporter final : public Exporter {
   };
 
   void add_faces(const PolygonFaces& faces, int frame, Samples& to) const;
-  [[nodiscard]] std::string mesh_text(const ExportedShape& shape, const Samples& samples) const;
+  [[nodiscard]] std::string mesh_text(const std::string& name, const ExportedShape& shape, const Samples& samples) const;
 
   ExportedRun run_;
   std::vector<ExportedShape> shapes_;

@@ -116,6 +116,30 @@ TEST(Exporter, SaysWhatAFormatCannotHold) {
   for (const std::string& format : exporter_formats()) EXPECT_THAT(make_exporter(format, {})->losses(false), IsEmpty()) << format;
 }
 
+// 300 frames: every second one, and the last.
+TEST(Exporter, OfGltfEndsWithTheLastFrame) {
+  ExportedRun run = sample(300);
+  const std::unique_ptr<Exporter> exporter = make_exporter("gltf", run);
+  ExportedFrame frame = sample_frame(1);
+  for (int number = 1; number <= run.frames; ++number) {
+    frame.number = number;
+    frame.state.time = (number - 1) / run.frame_rate;
+    (void)exporter->frame(frame);
+  }
+  const std::string glb = exporter->end(run.frames).front().bytes;
+  EXPECT_THAT(glb, HasSubstr("\"max\":[" + std::to_string(299.0 / 3.0).substr(0, 6)));
+}
+
+TEST(Exporter, GivesUsdPrimsNamesOfTheirOwn) {
+  ExportedRun run = sample();
+  run.model.bodies[0].name = "a-b";
+  run.model.bodies[1].name = "a_b";
+  const std::unique_ptr<Exporter> exporter = make_exporter("usda", run);
+  (void)exporter->frame(sample_frame(1));
+  const std::string usd = exporter->end(1).front().bytes;
+  EXPECT_THAT(usd, AllOf(HasSubstr("def Mesh \"a_b\""), HasSubstr("def BasisCurves \"a_b_\"")));
+}
+
 TEST(Exporter, OfAnUnknownFormatIsNone) { EXPECT_EQ(make_exporter("fbx", sample()), nullptr); }
 
 }  // namespace
