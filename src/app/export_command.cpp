@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/files/file_pattern.h"
 #include "base/files/file_writer.h"
+#include "base/format.h"
 #include "output/output_folder.h"
 #include "output/run_export.h"
 #include "output/run_summary.h"
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -77,19 +79,23 @@ class Unfinished {
 /// The user interrupts an export.
 struct Interrupted {};
 
-/// Files that formats share, as the OBJ file of frame 1 of pc2 and mdd, are written twice with the same bytes. Frames of a longer
-/// export that is replaced are removed.
+/// Files that formats share, as the OBJ file of frame 1 of pc2 and mdd, are written twice with the same bytes.
 void export_with(const RecordedRun& run, Exporter& exporter, const fs::path& out, Unfinished& unfinished) {
   for (const std::string& loss : exporter.losses(!run.torn_faces().empty())) print_message(loss);
-  for (const std::string& pattern : exporter.patterns()) {
-    std::error_code ignored;
-    for (const fs::path& file : files_in(out, pattern)) fs::remove(file, ignored);
-  }
+  std::set<fs::path> written;
   export_frames(run, exporter, [&](const ExportedFile& file) {
     if (interrupted()) throw Interrupted{};
     write_file(out / file.path, file.bytes);
     unfinished.add(out / file.path);
+    written.insert(out / file.path);
   });
+  // Frames of a longer export, which this one replaces.
+  for (const std::string& pattern : exporter.patterns()) {
+    std::error_code ignored;
+    for (const fs::path& file : files_in(out, pattern)) {
+      if (!written.contains(file)) fs::remove(file, ignored);
+    }
+  }
 }
 
 }  // namespace
@@ -130,7 +136,7 @@ ExitCode export_run(const ExportOptions& options) {
   }
   unfinished.keep();
   if (wants_html) export_html(options.folder, html);
-  print_message(fmt::format("{} of {} are in {}", fmt::format("{} frames", run.frames()), run.title(), out.string()));
+  print_message(fmt::format("{} of {} are in {}", counted(run.frames(), "frame"), run.title(), out.string()));
   return ExitCode::done;
 }
 

@@ -189,7 +189,8 @@ void set_divergence_remedy(const SimulatorSettings& settings, const SpectralBoun
   const bool gains = gains_energy(settings.integrator, bounds, settings.longest_substep());
   const bool too_large = settings.longest_substep() > advised_step(settings.integrator, bounds);
   if (!gains && !too_large && !failure.remedy.empty()) return;
-  const StepAdvice advice = gains || too_large ? advise_step(settings, bounds) : advise_at_most(settings, 0.5 * settings.step);
+  const StepAdvice advice =
+      gains || too_large ? advise_step(settings, bounds) : advise_at_most(settings, 0.5 * settings.longest_substep());
   failure.smaller_step = advice.step;
   failure.remedy = (gains ? "explicit Euler gains energy at any step; use " : "use ") + advice.text;
   if (!gains && !too_large) failure.remedy += ", less stiffness, or slower motion";

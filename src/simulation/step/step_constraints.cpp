@@ -235,7 +235,6 @@ void StepConstraints::end_contact_step(const ObstacleFrame& frame, SimulationSta
     return responds ? respond_to_truncation(state, forces) : relax(frame, positions, report.stretch_excess, violation_before);
   };
   if (responds) responded_ = state.x;
-  const Points projected = can_collide ? state.x : Points();
   if (inner_ == 1) {
     if (can_collide) contacts_.truncate(frame, motion(), state.x, relax_again);
     integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
@@ -243,11 +242,11 @@ void StepConstraints::end_contact_step(const ObstacleFrame& frame, SimulationSta
     Points truncated = state.x;
     if (can_collide) contacts_.truncate(frame, contact_step(), motion(), truncated, relax_again);
     integrator_.recover_velocities(state, forces, positions_before(state), advanced_, dt_);
+    if (contacts_.truncated_count() > 0) report.truncation_strain = largest_strain(network_.springs, truncated - state.x);
     add_displacement(truncated, state);
   }
   if (can_collide) contacts_.limit_speed_of_moved(motion(), state, integrator_);
   report.truncated = contacts_.truncated_count();
-  if (report.truncated > 0) report.truncation_strain = largest_strain(network_.springs, state.x - projected);
   report.infeasible = contacts_.infeasible_count();
   if (limit_ && (rounds > 0 || report.truncated > 0)) report.stretch_excess = limit_->excess(state.x);
 }

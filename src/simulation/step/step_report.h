@@ -15,7 +15,7 @@ struct StepReport {
   int limit_solves = 0;                   ///< linear systems solved for the stretch limit
   double stretch_excess = 0.0;            ///< largest at the end of a substep [fraction of the rest length]
   Index truncated = 0;                    ///< particles that truncation stopped
-  double truncation_strain = 0.0;         ///< largest strain of a spring by truncation: it stopped one end more than the other [1]
+  double truncation_strain = 0.0;         ///< largest strain of a spring by truncation after several inner substeps [1]
   Index infeasible = 0;                   ///< particles without an admissible position
   Index max_infeasible = 0;               ///< the most in one substep
   double deformation = 0.0;               ///< of the last substep; see StretchLimit::deformation
