@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr int kNotFound = 127;  // of a shell that does not find the program
 
+constexpr std::size_t kRandomLetters = 6;  // that mkdtemp() puts in the place of as many X
+
 PlotFormat format_of(const fs::path& file) {
   if (file.extension() == ".png") return PlotFormat::png;
   if (file.extension() == ".svg") return PlotFormat::svg;
@@ -54,7 +56,7 @@ void draw(const fs::path& script, const fs::path& picture) {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "sprung-plot-XXXXXX").string();
+    std::string name = (fs::temp_directory_path() / ("sprung-plot-" + std::string(kRandomLetters, 'X'))).string();
     if (::mkdtemp(name.data()) == nullptr) throw FileError("write", name, "the folder for temporary files cannot be used");
     path_ = name;
   }

@@ -7,6 +7,7 @@
 #include "simulation/model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
@@ -48,9 +49,15 @@ bool is_replaced(const std::string& override_text, std::string_view key) {
   return own.starts_with(key) && (own.size() == key.size() || own[key.size()] == '.' || own[key.size()] == '[');
 }
 
-/// Continues with the steps of the run.
+/// Continues with the steps of the run, in inner substeps that are no longer than those of the settings.
 SimulatorSettings with_steps_of(const SimulatorSettings& run, SimulatorSettings settings) {
+  const double longest = settings.longest_substep();
   settings.step = run.step;
+  if (settings.inner_substeps > 1) {
+    constexpr double kRounding = 1.0e-9;
+    const double needed = std::ceil(run.step / longest - kRounding);
+    settings.inner_substeps = static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(kMaxInnerSubsteps)));
+  }
   settings.steps_per_frame = run.steps_per_frame;
   return settings;
 }
