@@ -1,6 +1,6 @@
 #include "app/commands.h"
 #include "app/console.h"
-#include "app/mesh_text.h"
+#include "app/text/mesh_text.h"
 #include "base/error.h"
 #include "base/format.h"
 #include "geometry/import/mesh_file.h"

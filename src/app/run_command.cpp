@@ -3,7 +3,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/run_watch.h"
-#include "app/step_text.h"
+#include "app/text/step_text.h"
 #include "base/error.h"
 #include "base/format.h"
 #include "base/parallel.h"

@@ -73,6 +73,8 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
     {"output/record", {}},
     {"output/exporters", {"record"}},
 
+    {"app/text", {}},
+
     {"scene/format", {}},
     {"scene/json", {}},
     {"scene/materials", {}},

@@ -1,6 +1,6 @@
-#include "app/symmetry_text.h"
+#include "app/text/symmetry_text.h"
 
-#include "app/mesh_text.h"
+#include "app/text/mesh_text.h"
 #include "base/format.h"
 #include "geometry/mesh/triangle_mesh.h"
 

@@ -1,4 +1,4 @@
-#include "app/step_text.h"
+#include "app/text/step_text.h"
 
 #include "base/format.h"
 

@@ -1,4 +1,4 @@
-#include "app/mesh_text.h"
+#include "app/text/mesh_text.h"
 
 #include "base/format.h"
 

@@ -1,6 +1,6 @@
-#include "app/body_text.h"
+#include "app/text/body_text.h"
 
-#include "app/mesh_text.h"
+#include "app/text/mesh_text.h"
 #include "base/format.h"
 #include "network/spring_pieces.h"
 #include "network/stiffness_estimate.h"
