@@ -180,7 +180,9 @@ void RunWatch::note_broken(const FrameDiagnostics& frame) {
 
 void RunWatch::note_truncated(const FrameDiagnostics& frame) {
   ++memory_.frames;
-  const double particles = static_cast<double>(frame.substeps) * static_cast<double>(simulator_.network().particle_count());
+  // Inner substeps share one truncation.
+  const double contact_steps = static_cast<double>(frame.substeps) / simulator_.settings().inner_substeps;
+  const double particles = contact_steps * static_cast<double>(simulator_.network().particle_count());
   // Obstacles that close on a body stop many particles at any thickness; such frames have infeasible vertices.
   if (frame.infeasible == 0 && static_cast<double>(frame.truncated) > kManyParticles * particles) ++memory_.truncated_frames;
 }
@@ -236,8 +238,9 @@ void RunWatch::warn_of_thin_bodies() {
   const double least = kFallsWithinGap * settings.gravity.norm() * settings.step * settings.step;
   const double gap = thinnest_gap(simulator_.network().bodies, simulator_.obstacles());
   if (gap >= least) return;
-  // No step is small enough for a gap of 0.
-  const auto step = gap > 0.0 ? step_to_type(settings.frame_rate, settings.step * std::sqrt(gap / least)) : std::nullopt;
+  // No step is small enough for a gap of 0. A given step has no inner substeps.
+  const double enough = std::min(settings.step * std::sqrt(gap / least), settings.longest_substep());
+  const auto step = gap > 0.0 ? step_to_type(settings.frame_rate, enough) : std::nullopt;
   warn(fmt::format(
       "thickness {} m is too small for the step: resting bodies fall through it in a few steps. Contact stopped more than {} % of "
       "the particles in {}, which is slow and overstretches them. Use a thickness of at least {} m{}.",
