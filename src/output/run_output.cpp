@@ -158,20 +158,11 @@ void RunOutput::take_back_frames(const RunCheckpoint& to) {
   if (has_record_) folder_.cut(kRecordFile, to.record_size);
   folder_.cut(kDiagnosticsFile, to.diagnostics_size);
   if (has_forces_) folder_.cut(kForcesFile, to.forces_size);
-  for (const ObjSequence& sequence : sequences_) {
-    if (!sequence.changes()) continue;
-    const std::filesystem::path last = folder_.path() / fill_pattern(sequence.pattern(), progress_.frames_written);
-    for (const std::filesystem::path& file : matching_files(folder_.path(), sequence.pattern())) {
+  for (const std::string& pattern : patterns()) {
+    if (pattern.find('#') == std::string::npos) continue;
+    const std::filesystem::path last = folder_.path() / fill_pattern(pattern, progress_.frames_written);
+    for (const std::filesystem::path& file : matching_files(folder_.path(), pattern)) {
       if (file > last) folder_.remove(file.lexically_relative(folder_.path()));
-    }
-  }
-  for (const std::unique_ptr<Exporter>& exporter : exporters_) {
-    for (const std::string& pattern : exporter->patterns()) {
-      if (pattern.find('#') == std::string::npos) continue;
-      const std::filesystem::path last = folder_.path() / fill_pattern(pattern, progress_.frames_written);
-      for (const std::filesystem::path& file : matching_files(folder_.path(), pattern)) {
-        if (file > last) folder_.remove(file.lexically_relative(folder_.path()));
-      }
     }
   }
   for (const std::string& pattern : patterns()) {  // of a program that was killed

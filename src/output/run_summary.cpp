@@ -36,6 +36,19 @@ bool is_run_summary(const Json& json) {
   return files.is_array() && std::all_of(files.begin(), files.end(), [](const Json& file) { return file.is_string(); });
 }
 
+/// Lists the files of exports. Returns whether any was not listed before.
+bool add_exports(const std::vector<std::string>& patterns, Json& json) {
+  if (!json.contains("exports") || !json["exports"].is_array()) json["exports"] = Json::array();
+  bool is_new = false;
+  for (const std::string& pattern : patterns) {
+    if (std::ranges::find(json["files"], Json(pattern)) != json["files"].end()) continue;
+    json["files"].push_back(pattern);
+    json["exports"].push_back(pattern);
+    is_new = true;
+  }
+  return is_new;
+}
+
 }  // namespace
 
 std::int64_t frame_of_step(std::int64_t step, std::int64_t steps_per_frame) {
@@ -83,14 +96,7 @@ RunSummary::RunSummary(RunSummary&&) noexcept = default;
 
 void RunSummary::set_record(const std::string& fingerprint) { document_->json["record"] = fingerprint; }
 
-void RunSummary::set_exports(const std::vector<std::string>& patterns) {
-  Json& json = document_->json;
-  for (const std::string& pattern : patterns) {
-    if (std::ranges::find(json["files"], Json(pattern)) != json["files"].end()) continue;
-    json["files"].push_back(pattern);
-    json["exports"].push_back(pattern);
-  }
-}
+void RunSummary::set_exports(const std::vector<std::string>& patterns) { add_exports(patterns, document_->json); }
 
 std::string RunSummary::text(const RunProgress& progress) const {
   Json& json = document_->json;
@@ -144,15 +150,7 @@ void add_files_to_run(const std::filesystem::path& folder, const std::vector<std
   std::ifstream stream(file);
   Json json = Json::parse(stream, nullptr, false);
   if (!is_run_summary(json)) throw FileError("read", file.string(), "it is not the summary of a run");
-  if (!json.contains("exports") || !json["exports"].is_array()) json["exports"] = Json::array();
-  bool is_new = false;
-  for (const std::string& pattern : patterns) {
-    if (std::ranges::find(json["files"], Json(pattern)) != json["files"].end()) continue;
-    json["files"].push_back(pattern);
-    json["exports"].push_back(pattern);
-    is_new = true;
-  }
-  if (is_new) write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (add_exports(patterns, json)) write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::vector<std::string> exports_of_run(const std::filesystem::path& run_summary) {

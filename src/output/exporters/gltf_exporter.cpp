@@ -90,7 +90,11 @@ class GltfExporter::Builder {
     model_.animations[0].name = "simulation";
   }
 
+  /// A material of this name, which is made once.
   int add_material(const std::string& name, bool is_body) {
+    const auto same = [&](const tinygltf::Material& other) { return other.name == name; };
+    const auto found = std::ranges::find_if(model_.materials, same);
+    if (found != model_.materials.end()) return static_cast<int>(found - model_.materials.begin());
     tinygltf::Material material;
     material.name = name;
     material.doubleSided = true;
@@ -242,77 +246,85 @@ std::vector<ExportedFile> GltfExporter::frame(const ExportedFrame& frame) {
 std::vector<ExportedFile> GltfExporter::end(int /*frames*/) {
   Builder builder;
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
-    const ExportedShape& shape = shapes_[k];
     if (targets_[k].empty() || targets_[k].front().cols() == 0) continue;
-    const Eigen::Matrix3Xf& first = targets_[k].front();
-    const SplitVertices vertices = split(shape.faces, static_cast<Index>(first.cols()));
-    const Eigen::Matrix3Xf base = first(Eigen::all, vertices.vertex_of);
-    std::map<std::string, int> attributes{{"POSITION", builder.add_positions(base)}};
-    if (!vertices.texcoords.empty()) {
-      std::vector<float> uv;
-      for (const std::array<float, 2>& at : vertices.texcoords) uv.insert(uv.end(), at.begin(), at.end());
-      attributes["TEXCOORD_0"] =
-          builder.add(uv, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
-    }
-    std::vector<std::map<std::string, int>> targets;
-    for (std::size_t t = 1; t < targets_[k].size(); ++t) {
-      const Eigen::Matrix3Xf moved = targets_[k][t](Eigen::all, vertices.vertex_of) - base;
-      targets.push_back({{"POSITION", builder.add_positions(moved)}});
-    }
     tinygltf::Mesh mesh;
-    const auto add_primitive = [&](const std::vector<std::uint32_t>& corners, int mode, int material) {
-      if (corners.empty()) return;
-      tinygltf::Primitive primitive;
-      primitive.attributes = attributes;
-      primitive.targets = targets;
-      primitive.mode = mode;
-      primitive.material = material;
-      primitive.indices =
-          builder.add(corners, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-      mesh.primitives.push_back(std::move(primitive));
-    };
-    const bool is_body = shape.body != kNone;
-    const RecordedBody* body = is_body ? &run_.model.bodies[shape.body] : nullptr;
-    if (body == nullptr || body->face_materials.empty()) {
-      add_primitive(triangles(shape.faces, vertices, 0, shape.faces.face_count()), TINYGLTF_MODE_TRIANGLES,
-                    builder.add_material(shape.name, is_body));
-    } else {
-      for (std::size_t m = 0; m < body->face_materials.size(); ++m) {
-        const Index end = m + 1 < body->face_material_begin.size() ? body->face_material_begin[m + 1] : shape.faces.face_count();
-        add_primitive(triangles(shape.faces, vertices, body->face_material_begin[m], end), TINYGLTF_MODE_TRIANGLES,
-                      builder.add_material(body->face_materials[m], true));
-      }
-    }
-    std::vector<std::uint32_t> ends;
-    for (const Index end : shape.lines.reshaped()) ends.push_back(static_cast<std::uint32_t>(end));
-    if (!ends.empty()) add_primitive(ends, TINYGLTF_MODE_LINE, builder.add_material(shape.name + " lines", is_body));
+    mesh.primitives = primitives(k, builder);
     if (mesh.primitives.empty()) continue;
-    mesh.weights.assign(targets.size(), 0.0);
-    const int node = builder.add_node(shape.name, std::move(mesh));
-    if (!targets.empty()) {
-      std::vector<float> weights(targets.size() * target_times_[k].size(), 0.0F);
-      for (std::size_t t = 1; t < target_times_[k].size(); ++t) weights[t * targets.size() + t - 1] = 1.0F;
-      builder.animate(node, "weights", builder.add_times(target_times_[k]),
-                      builder.add(weights, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 1));
-    }
-    if (!poses_[k].empty()) {
-      std::vector<float> places;
-      std::vector<float> turns;
-      Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
-      for (const RigidTransform& pose : poses_[k]) {
-        const Vector3 place = pose.translation();
-        for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(place[axis]));
-        Eigen::Quaterniond turn(pose.rotation());
-        if (turn.dot(before) < 0.0) turn.coeffs() *= -1.0;  // the shorter way between two frames
-        before = turn;
-        for (int axis = 0; axis < 4; ++axis) turns.push_back(static_cast<float>(turn.coeffs()[axis]));
-      }
-      const int times = builder.add_times(times_);
-      builder.animate(node, "translation", times, builder.add(places, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 3));
-      builder.animate(node, "rotation", times, builder.add(turns, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4, 4));
-    }
+    mesh.weights.assign(targets_[k].size() - 1, 0.0);
+    const int node = builder.add_node(shapes_[k].name, std::move(mesh));
+    if (targets_[k].size() > 1) animate_targets(k, node, builder);
+    if (!poses_[k].empty()) animate_pose(k, node, builder);
   }
   return {{"animation.glb", builder.bytes()}};
+}
+
+/// Of the faces of each material, and of the lines.
+std::vector<tinygltf::Primitive> GltfExporter::primitives(std::size_t k, Builder& builder) const {
+  const ExportedShape& shape = shapes_[k];
+  const SplitVertices vertices = split(shape.faces, static_cast<Index>(targets_[k].front().cols()));
+  tinygltf::Primitive shared;
+  const Eigen::Matrix3Xf base = targets_[k].front()(Eigen::all, vertices.vertex_of);
+  shared.attributes["POSITION"] = builder.add_positions(base);
+  if (!vertices.texcoords.empty()) {
+    std::vector<float> uv;
+    for (const std::array<float, 2>& at : vertices.texcoords) uv.insert(uv.end(), at.begin(), at.end());
+    shared.attributes["TEXCOORD_0"] =
+        builder.add(uv, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
+  }
+  for (std::size_t t = 1; t < targets_[k].size(); ++t) {
+    const Eigen::Matrix3Xf moved = targets_[k][t](Eigen::all, vertices.vertex_of) - base;
+    shared.targets.push_back({{"POSITION", builder.add_positions(moved)}});
+  }
+  std::vector<tinygltf::Primitive> all;
+  const bool is_body = shape.body != kNone;
+  const auto add = [&](const std::vector<std::uint32_t>& corners, int mode, const std::string& material) {
+    if (corners.empty()) return;
+    tinygltf::Primitive& primitive = all.emplace_back(shared);
+    primitive.mode = mode;
+    primitive.material = builder.add_material(material, is_body);
+    primitive.indices =
+        builder.add(corners, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+  };
+  const Index faces = shape.faces.face_count();
+  if (!is_body || run_.model.bodies[shape.body].face_materials.empty()) {
+    add(triangles(shape.faces, vertices, 0, faces), TINYGLTF_MODE_TRIANGLES, shape.name);
+  } else {
+    const RecordedBody& body = run_.model.bodies[shape.body];
+    for (std::size_t m = 0; m < body.face_materials.size(); ++m) {
+      const Index end = m + 1 < body.face_material_begin.size() ? body.face_material_begin[m + 1] : faces;
+      add(triangles(shape.faces, vertices, body.face_material_begin[m], end), TINYGLTF_MODE_TRIANGLES, body.face_materials[m]);
+    }
+  }
+  std::vector<std::uint32_t> ends;
+  for (const Index end : shape.lines.reshaped()) ends.push_back(static_cast<std::uint32_t>(end));
+  add(ends, TINYGLTF_MODE_LINE, shape.name + " lines");
+  return all;
+}
+
+/// At the time of each target its weight is 1.
+void GltfExporter::animate_targets(std::size_t k, int node, Builder& builder) const {
+  const std::size_t targets = targets_[k].size() - 1;
+  std::vector<float> weights(targets * target_times_[k].size(), 0.0F);
+  for (std::size_t t = 1; t < target_times_[k].size(); ++t) weights[t * targets + t - 1] = 1.0F;
+  builder.animate(node, "weights", builder.add_times(target_times_[k]),
+                  builder.add(weights, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 1));
+}
+
+void GltfExporter::animate_pose(std::size_t k, int node, Builder& builder) const {
+  std::vector<float> places;
+  std::vector<float> turns;
+  Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
+  for (const RigidTransform& pose : poses_[k]) {
+    const Vector3 place = pose.translation();
+    for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(place[axis]));
+    Eigen::Quaterniond turn(pose.rotation());
+    if (turn.dot(before) < 0.0) turn.coeffs() *= -1.0;  // the shorter way between two frames
+    before = turn;
+    for (int axis = 0; axis < 4; ++axis) turns.push_back(static_cast<float>(turn.coeffs()[axis]));
+  }
+  const int times = builder.add_times(times_);
+  builder.animate(node, "translation", times, builder.add(places, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 3));
+  builder.animate(node, "rotation", times, builder.add(turns, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4, 4));
 }
 
 }  // namespace sprung

@@ -3,6 +3,10 @@
 
 #include "output/exporters/exported_shape.h"
 
+namespace tinygltf {
+struct Primitive;
+}
+
 namespace sprung {
 
 /// `animation.glb`. Each body is a node with a mesh: the vertices of frame 1, a morph target for each other frame, and an animation
@@ -22,6 +26,10 @@ class GltfExporter final : public Exporter {
   class Builder;
 
   [[nodiscard]] int interval(Index vertices) const;
+  // Of the shape of a number.
+  [[nodiscard]] std::vector<tinygltf::Primitive> primitives(std::size_t k, Builder& builder) const;
+  void animate_targets(std::size_t k, int node, Builder& builder) const;
+  void animate_pose(std::size_t k, int node, Builder& builder) const;
 
   ExportedRun run_;
   std::vector<ExportedShape> shapes_;
