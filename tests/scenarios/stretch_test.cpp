@@ -57,7 +57,8 @@ std::vector<double> energies_of_fall(int particles, const std::string& points) {
   std::vector<double> energies;
   const std::string shape = R"(bodies.rope.shape={"type":"rope","points":)" + points + R"(,"particles":)";
   run_scenario(
-      load_scenario("limited_rope", {shape + std::to_string(particles) + "}", "duration=0.5"}),
+      load_scenario("limited_rope",
+                    {shape + std::to_string(particles) + "}", "duration=0.5", R"(stretch_limit={"max_stretch": 0.02})"}),
       [&](const Simulator&, const FrameDiagnostics& frame) { energies.push_back(frame.gravity_energy); }, Judge::nothing);
   return energies;
 }
