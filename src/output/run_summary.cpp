@@ -86,6 +86,7 @@ RunSummary::RunSummary(const RunFacts& facts, double step, const std::vector<std
                      {"warnings", Json::array()},
                      {"record", Json()},
                      {"files", files},
+                     {"exports", Json::array()},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
   document_->warnings = facts.warnings;
   for (const StepAdjustment& adjustment : facts.adjustments) document_->json["step_adjustments"].push_back(json_of(adjustment));

@@ -54,6 +54,13 @@ TEST(StepCheck, ADivergenceAtAStableStepAdvisesHalfOfIt) {
   EXPECT_EQ(found.smaller_step, 0.00555);
 }
 
+// Forces act in inner substeps, and a step that the user gives has none.
+TEST(StepCheck, ADivergenceInInnerSubstepsAdvisesHalfOfThem) {
+  SimulatorSettings inner = settings(1.0 / 30.0, 30.0);
+  inner.inner_substeps = 3;
+  EXPECT_EQ(failure(inner, bounds(0.0)).smaller_step, 0.00555);
+}
+
 TEST(StepCheck, ASchemeThatGainsEnergyIsNotAdvisedASmallerStepAlone) {
   const SpectralBounds damped = bounds(0.0);
   const SimulatorSettings small = settings(1.0 / 300.0, 30.0, ExplicitEulerSettings{});
