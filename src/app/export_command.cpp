@@ -85,7 +85,7 @@ void export_with(const RecordedRun& run, Exporter& exporter, const fs::path& out
   std::set<fs::path> written;
   export_frames(run, exporter, [&](const ExportedFile& file) {
     if (interrupted()) throw Interrupted{};
-    write_file(out / file.path, file.bytes);
+    write_file(out / file.path, content_of(file));
     unfinished.add(out / file.path);
     written.insert(out / file.path);
   });

@@ -17,6 +17,7 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -43,10 +44,10 @@ void check_formats(const RunOptions& options, bool writes_record) {
 }
 
 /// Those that exporters make.
-std::vector<std::string> further_formats(const RunOptions& options) {
+std::vector<std::string> formats_of(const RunOptions& options) {
   std::vector<std::string> formats;
   for (const std::string& format : exporter_formats()) {
-    if (format != "obj" && has_format(options, format)) formats.push_back(format);
+    if (has_format(options, format)) formats.push_back(format);
   }
   return formats;
 }
@@ -68,9 +69,8 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
           .sources = loaded.sources,
           .scene_file = loaded.scene.file.filename().string(),
           .materials = std::move(materials),
-          .write_obj = has_format(options, "obj"),
           .write_record = loaded.scene.write_record,
-          .formats = further_formats(options),
+          .formats = formats_of(options),
           .checkpoint_interval = options.checkpoint};
 }
 
@@ -174,15 +174,15 @@ void write_run(Run& run, const RunOptions& options) {
 }
 
 /// The output of a run that begins, or goes on from `point`. `memory` gets what the watch of a run that goes on remembers.
-RunOutput open_output(OutputFolder folder, const RunFacts& facts, const ResumePoint& point, LoadedScene& loaded,
-                      std::string& memory) {
+std::unique_ptr<RunOutput> open_output(OutputFolder folder, const RunFacts& facts, const ResumePoint& point, LoadedScene& loaded,
+                                       std::string& memory) {
   if (point.checkpoint) {
-    RunOutput output(std::move(folder), facts, loaded.simulator, *point.checkpoint, memory);
+    auto output = std::make_unique<RunOutput>(std::move(folder), facts, loaded.simulator, *point.checkpoint, memory);
     loaded.simulator.restore(*point.checkpoint);
     return output;
   }
   if (point.has_run) folder.remove_run();
-  return {std::move(folder), facts, loaded.simulator};
+  return std::make_unique<RunOutput>(std::move(folder), facts, loaded.simulator);
 }
 
 }  // namespace
@@ -209,7 +209,8 @@ ExitCode run(const RunOptions& options) {
     return ExitCode::done;
   }
   std::string memory;
-  RunOutput output = open_output(std::move(folder), facts, point, loaded, memory);
+  const std::unique_ptr<RunOutput> opened = open_output(std::move(folder), facts, point, loaded, memory);
+  RunOutput& output = *opened;
   if (!options.quiet) {
     announce(loaded);
     const bool tears = std::ranges::any_of(loaded.simulator.network().springs.laws, &SpringLaw::breaks);

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/files/file_pattern.h"
-#include "output/obj_sequence.h"
+#include "geometry/obj_source/vertex_lines.h"
 #include "output/record/array_block.h"
 #include "output/record/record_format.h"
 

@@ -16,6 +16,10 @@ void export_frames(const RecordedRun& run, Exporter& exporter, const std::functi
   std::ranges::for_each(exporter.end(run.frames()), write);
 }
 
+std::string content_of(const ExportedFile& file) {
+  return file.copy_of.empty() ? file.bytes : content_of(MaterialFile{.source = file.copy_of, .place = file.path});
+}
+
 std::vector<std::vector<Index>> torn_in(const RecordedModel& model, const std::vector<TornFaces>& torn_faces, int frame) {
   std::vector<std::vector<Index>> torn(model.bodies.size());
   for (const TornFaces& faces : torn_faces) {

@@ -15,6 +15,9 @@ namespace sprung {
 /// what `write` throws.
 void export_frames(const RecordedRun& run, Exporter& exporter, const std::function<void(const ExportedFile&)>& write);
 
+/// The bytes of a file. Throws FileError if the file that it is a copy of cannot be read.
+[[nodiscard]] std::string content_of(const ExportedFile& file);
+
 /// The faces of each body of the model that are gone in a frame.
 [[nodiscard]] std::vector<std::vector<Index>> torn_in(const RecordedModel& model, const std::vector<TornFaces>& torn_faces,
                                                       int frame);

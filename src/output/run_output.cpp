@@ -6,18 +6,16 @@
 #include "dynamics/state/simulation_state.h"
 #include "output/diagnostics_csv.h"
 #include "output/forces_csv.h"
+#include "output/output_names.h"
 #include "output/record/record_encoding.h"
 #include "output/record/record_format.h"
+#include "output/record/record_reader.h"
 #include "output/run_export.h"
 #include "simulation/simulator.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 namespace sprung {
@@ -25,21 +23,14 @@ namespace {
 
 constexpr const char* kForcesFile = "forces.csv";
 
+// Each has a copy of all positions and velocities.
+constexpr std::size_t kMostWaitingFrames = 2;
+
 // How the outcome of a run begins whose files could not be written.
 constexpr const char* kFailed = "failed";
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-std::string content_of(const MaterialFile& file) {
-  if (file.text) return *file.text;
-  errno = 0;
-  std::ifstream stream(file.source, std::ios::binary);
-  std::ostringstream bytes;
-  if (stream.peek() != std::ifstream::traits_type::eof()) bytes << stream.rdbuf();
-  if (!stream.is_open() || stream.bad()) throw FileError("copy", file.source.string(), std::strerror(errno));
-  return std::move(bytes).str();
 }
 
 std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
@@ -75,12 +66,8 @@ std::vector<BrokenAttachment> broken_attachments(const Simulator& simulator) {
   return all;
 }
 
-std::vector<ObjSequence> sequences_of(const Simulator& simulator, const RunFacts& facts) {
-  check_output_names(simulator);
-  return facts.write_obj ? obj_sequences(simulator, facts.sources, facts.frames) : std::vector<ObjSequence>();
-}
-
 std::optional<RunRecorder> recorder_of(const Simulator& simulator, const RunFacts& facts) {
+  check_output_names(simulator);
   if (!facts.write_record && facts.formats.empty()) return std::nullopt;
   return RunRecorder(simulator, facts.sources, facts.materials);
 }
@@ -98,15 +85,14 @@ std::vector<std::unique_ptr<Exporter>> exporters_of(const RunFacts& facts, const
 
 RunOutput::RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFolder folder)
     : folder_(std::move(folder)),
-      sequences_(sequences_of(simulator, facts)),
-      copies_(facts.write_obj ? copied_files(facts.sources) : std::vector<CopiedFile>()),
       has_forces_(simulator.settings().record_forces),
       recorder_(recorder_of(simulator, facts)),
       has_record_(facts.write_record),
       formats_(facts.formats),
       exporters_(exporters_of(facts, recorder_)),
       summary_(facts, simulator.settings().step, patterns()),
-      checkpoint_interval_(facts.checkpoint_interval) {}
+      checkpoint_interval_(facts.checkpoint_interval),
+      worker_(kMostWaitingFrames) {}
 
 RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator& simulator)
     : RunOutput(facts, simulator, std::move(folder)) {
@@ -115,7 +101,7 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
   const std::string head = has_record_ ? encode_head(recorder_->model(), recorder_->frame(simulator)) : "";
   if (has_record_) summary_.set_record(fingerprint(head));
   try {
-    write_summary();
+    write_summary(progress_);
     if (has_record_) folder_.write(kRecordFile, head);
     folder_.write(kDiagnosticsFile, csv_head());
     if (has_forces_) folder_.write(kForcesFile, forces_csv_head());
@@ -142,14 +128,15 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
     fail(std::string(file) +
          " is shorter than it was at the checkpoint, so frames are missing; run the scene again with --overwrite");
   }
-  if (has_record_) summary_.set_record(fingerprint(encode_head(recorder_->model(), recorder_->frame(simulator))));
+  if (has_record_) summary_.set_record(RecordReader(folder_.path() / kRecordFile).fingerprint());
   summary_.set_exports(exports_of_run(folder_.path() / kRunSummaryFile));
   identity_ = std::move(run.identity);
   monitor = std::move(run.monitor);
   progress_ = run.progress;
   progress_.outcome = "running";
+  written_ = progress_;
   seconds_before_ = progress_.wall_seconds;
-  write_summary();
+  write_summary(progress_);
   take_back_frames(run);
 }
 
@@ -176,8 +163,6 @@ std::vector<std::string> RunOutput::patterns() const {
   std::vector<std::string> patterns{kRunSummaryFile, kDiagnosticsFile, kAnimationFile, kCheckpointFile};
   if (has_record_) patterns.emplace_back(kRecordFile);
   if (has_forces_) patterns.emplace_back(kForcesFile);
-  for (const ObjSequence& sequence : sequences_) patterns.push_back(sequence.pattern());
-  for (const CopiedFile& copy : copies_) patterns.push_back(copy.path);
   for (const std::unique_ptr<Exporter>& exporter : exporters_) {
     for (const std::string& pattern : exporter->patterns()) {
       if (std::ranges::find(patterns, pattern) == patterns.end()) patterns.push_back(pattern);
@@ -186,60 +171,80 @@ std::vector<std::string> RunOutput::patterns() const {
   return patterns;
 }
 
-void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
-  const RunProgress before = progress_;
-  std::vector<std::string> written;
-  std::optional<std::uintmax_t> forces_before;  // size [bytes]
-  std::optional<std::uintmax_t> record_before;
+void RunOutput::note_progress(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
+  const bool is_first_step = progress_.substeps == 0;
   ++progress_.frames_written;
   progress_.steps = simulator.state().step;
   progress_.substeps += diagnostics.substeps;
   if (diagnostics.substeps > 0) {
     progress_.smallest_step =
-        before.substeps > 0 ? std::min(before.smallest_step, diagnostics.smallest_step) : diagnostics.smallest_step;
+        is_first_step ? diagnostics.smallest_step : std::min(progress_.smallest_step, diagnostics.smallest_step);
   }
   progress_.limit_solves += diagnostics.limit_solves;
   progress_.newton_from = handed_over(simulator);
   list_torn(simulator, progress_.frames_written, progress_.torn_faces);
   progress_.broken_attachments = broken_attachments(simulator);
+}
+
+void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
+  note_progress(simulator, diagnostics);
+  Frame frame{.exported = {.number = progress_.frames_written},
+              .diagnostics = csv_row(diagnostics),
+              .forces = has_forces_ ? forces_csv_rows(diagnostics.frame, diagnostics.time, simulator.reactions()) : "",
+              .progress = progress_};
+  if (recorder_) {
+    frame.exported.state = recorder_->frame(simulator);
+    frame.exported.torn = torn_in(recorder_->model(), progress_.torn_faces, frame.exported.number);
+  }
   try {
-    for (const ObjSequence& sequence : sequences_) {
-      if (before.frames_written > 0 && !sequence.changes()) continue;
-      const std::string file = fill_pattern(sequence.pattern(), progress_.frames_written);
-      folder_.write(file, sequence.text(simulator));
-      written.push_back(file);
-    }
-    if (before.frames_written == 0) {
-      for (const CopiedFile& copy : copies_) {
-        folder_.write(copy.path, content_of(copy.file));
-        written.push_back(copy.path);
+    worker_.add([this, frame = std::move(frame)] { write(frame); });
+  } catch (...) {
+    take_back_progress();
+    throw;
+  }
+}
+
+void RunOutput::flush() {
+  try {
+    worker_.wait();
+  } catch (...) {
+    take_back_progress();
+    throw;
+  }
+}
+
+/// To the last frame that is written. Requires that the worker has nothing to do.
+void RunOutput::take_back_progress() {
+  std::vector<std::string> warnings = std::move(progress_.warnings);
+  progress_ = written_;
+  progress_.warnings = std::move(warnings);
+}
+
+void RunOutput::write(const Frame& frame) {
+  std::vector<std::string> files;
+  std::optional<std::uintmax_t> forces_before;  // size [bytes]
+  std::optional<std::uintmax_t> record_before;
+  RunProgress progress = frame.progress;
+  try {
+    for (const std::unique_ptr<Exporter>& exporter : exporters_) {
+      if (!exporter->writes_each_frame()) continue;
+      for (const ExportedFile& file : exporter->frame(frame.exported)) {
+        folder_.write(file.path, content_of(file));
+        files.push_back(file.path);
       }
     }
-    if (recorder_) {
-      ExportedFrame frame{.number = progress_.frames_written, .state = recorder_->frame(simulator)};
-      frame.torn = torn_in(recorder_->model(), progress_.torn_faces, frame.number);
-      for (const std::unique_ptr<Exporter>& exporter : exporters_) {
-        if (!exporter->writes_each_frame()) continue;
-        for (const ExportedFile& file : exporter->frame(frame)) {
-          folder_.write(file.path, file.bytes);
-          written.push_back(file.path);
-        }
-      }
-      // run.json never counts a frame that the record lacks, even if the program is killed.
-      if (has_record_) record_before = folder_.append(kRecordFile, encode_frame(frame.state));
-    }
-    write_summary();
-    if (has_forces_) {
-      forces_before = folder_.append(kForcesFile, forces_csv_rows(diagnostics.frame, diagnostics.time, simulator.reactions()));
-    }
-    folder_.append(kDiagnosticsFile, csv_row(diagnostics));
+    // run.json never counts a frame that the record lacks, even if the program is killed.
+    if (has_record_) record_before = folder_.append(kRecordFile, encode_frame(frame.exported.state));
+    write_summary(progress);
+    if (has_forces_) forces_before = folder_.append(kForcesFile, frame.forces);
+    folder_.append(kDiagnosticsFile, frame.diagnostics);
   } catch (...) {
     if (forces_before) folder_.shorten(kForcesFile, *forces_before);
     if (record_before) folder_.shorten(kRecordFile, *record_before);
-    for (const std::string& file : written) folder_.remove(file);
-    progress_ = before;
+    for (const std::string& file : files) folder_.remove(file);
     throw;
   }
+  written_ = std::move(progress);
 }
 
 std::string RunOutput::write_due_checkpoint(const Simulator& simulator, const std::string& monitor) {
@@ -249,6 +254,7 @@ std::string RunOutput::write_due_checkpoint(const Simulator& simulator, const st
 
 std::string RunOutput::write_checkpoint_now(const Simulator& simulator, const std::string& monitor) {
   if (checkpoint_interval_ <= 0.0) return "";
+  flush();
   last_checkpoint_ = std::chrono::steady_clock::now();
   try {
     RunCheckpoint run;
@@ -269,15 +275,16 @@ std::string RunOutput::write_checkpoint_now(const Simulator& simulator, const st
 }
 
 void RunOutput::finish(const std::string& outcome) {
+  flush();
   // Whoever kills the program here finds a run that has not ended, which --resume ends.
   if (progress_.frames_written > 0 && !outcome.starts_with(kFailed)) write_whole_files();
   progress_.outcome = outcome;
-  write_summary();
+  write_summary(progress_);
 }
 
 /// Each gets a new exporter, which knows how many frames there are.
 void RunOutput::write_whole_files() {
-  const auto write = [this](const ExportedFile& file) { folder_.write(file.path, file.bytes); };
+  const auto write = [this](const ExportedFile& file) { folder_.write(file.path, content_of(file)); };
   std::optional<RecordedRun> run;
   for (std::size_t k = 0; k < exporters_.size(); ++k) {
     if (exporters_[k]->writes_each_frame()) {
@@ -298,9 +305,9 @@ std::vector<std::string> RunOutput::losses(bool tears) const {
   return all;
 }
 
-void RunOutput::write_summary() {
-  progress_.wall_seconds = seconds_before_ + seconds_since(start_);
-  folder_.write(kRunSummaryFile, summary_.text(progress_));
+void RunOutput::write_summary(RunProgress& progress) {
+  progress.wall_seconds = seconds_before_ + seconds_since(start_);
+  folder_.write(kRunSummaryFile, summary_.text(progress));
 }
 
 }  // namespace sprung

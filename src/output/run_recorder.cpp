@@ -23,6 +23,7 @@ RecordedBody recorded(const Body& body, const ObjSources& sources, const BodyMat
   std::iota(result.particle_of.begin(), result.particle_of.end(), 0);
   if (const auto material = materials.find(body.name); material != materials.end()) result.material = material->second;
   if (const auto source = sources.find(body.name); source != sources.end()) {
+    result.source = source->second;
     if (!source->second->particle_of.empty()) result.particle_of = source->second->particle_of;
     result.faces = source->second->faces;
     result.lines = source->second->lines;

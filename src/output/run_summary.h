@@ -34,13 +34,12 @@ struct RunFacts {
   std::optional<std::uint64_t> seed{};  ///< of the scene; none if nothing uses it
   std::vector<StepAdjustment> adjustments{};
   std::vector<std::string> warnings{};
-  ObjSources sources{};                ///< of bodies that are written as their files are
-  std::string scene_file{};            ///< name of the scene's file, without its folders; empty if there is none
-  BodyMaterials materials{};           ///< of bodies that have one
-  bool write_obj = true;               ///< whether frames are written as OBJ files
-  bool write_record = true;            ///< whether record.bin is written
-  std::vector<std::string> formats{};  ///< further formats of the frames, of exporter_formats() without obj
-  double checkpoint_interval = 0.0;    ///< at most so often a checkpoint is written [s], wall time; 0: never
+  ObjSources sources{};                     ///< of bodies that are written as their files are
+  std::string scene_file{};                 ///< name of the scene's file, without its folders; empty if there is none
+  BodyMaterials materials{};                ///< of bodies that have one
+  bool write_record = true;                 ///< whether record.bin is written
+  std::vector<std::string> formats{"obj"};  ///< of the frames, names of exporter_formats()
+  double checkpoint_interval = 0.0;         ///< at most so often a checkpoint is written [s], wall time; 0: never
 };
 
 /// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.

@@ -1,7 +1,8 @@
 #include "viewer/live_session.h"
 
 #include "base/error.h"
-#include "output/obj_sequence.h"
+#include "output/exporters/exporter.h"
+#include "output/run_recorder.h"
 #include "scene/reading/scene_reader.h"
 
 #include <nlohmann/json.hpp>
@@ -303,10 +304,13 @@ void LiveSession::tell_obj(ClientId client, const Shown& shown, const std::strin
   const std::vector<Body>& bodies = simulator.network().bodies;
   const auto body = std::ranges::find(bodies, body_name, &Body::name);
   if (body == bodies.end()) throw PageCommandError("there is no body " + body_name);
-  const ObjSources& sources = shown.run.loaded().sources;
-  const auto source = sources.find(body_name);
-  const std::string text = body_obj_text(simulator, *body, source == sources.end() ? nullptr : source->second.get());
-  publisher_->tell(client, obj_message(body_name + ".obj", text));
+  const RunRecorder recorder(simulator, shown.run.loaded().sources, {});
+  ExportedFrame frame{.state = recorder.frame(simulator)};
+  for (const Body& each : bodies) frame.torn.push_back(each.surface.torn);
+  for (const ExportedFile& file : make_exporter("obj", {.model = recorder.model()})->frame(frame)) {
+    const bool is_of_body = file.path.starts_with(body_name + "/") && file.path.ends_with(".obj");
+    if (is_of_body) publisher_->tell(client, obj_message(body_name + ".obj", file.bytes));
+  }
 }
 
 /// Shows the problems of an action that the scene does not permit.

@@ -238,6 +238,15 @@ TEST_F(MeshBodyFiles, MaterialsAreCopiedBesideTheFramesAndNeverOutside) {
   EXPECT_THAT(ending.err, HasSubstr("\"../b.mtl\""));
   EXPECT_EQ(RecordedRun(scratch_ / "out").model().bodies.size(), 1U);
 
+  // The record has them too, but for textures.
+  const Ending exported = run({"export", out(), "--format", "obj", "--out", out("exported")});
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  EXPECT_THAT(exported.err,
+              AllOf(HasSubstr("shirt/look/tex/red cloth.png"), HasSubstr("shirt/look/up.png"), HasSubstr("shirt/up.png")));
+  for (const char* name : {"shirt.0001.obj", "shirt.0002.obj", "look/a.mtl", "b.mtl"}) {
+    EXPECT_EQ(read_text(scratch_ / "exported/shirt" / name), read_text(scratch_ / "out/shirt" / name)) << name;
+  }
+
   // What a run wrote goes with it, and nothing else.
   write_text(scratch_ / "out/shirt/look/mine.png", "mine");
   ASSERT_EQ(run({"run", save(rope_scene()), "--out", out(), "--overwrite"}).code, 0);

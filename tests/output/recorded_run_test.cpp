@@ -43,9 +43,9 @@ class RecordedWorld : public ::testing::Test {
 };
 
 TEST_F(RecordedWorld, HasTheStatesOfTheSimulatorWithAndWithoutObjFiles) {
-  for (const bool write_obj : {true, false}) {
+  for (const std::vector<std::string>& formats : {std::vector<std::string>{"obj"}, {}}) {
     states_.clear();
-    run({.scene_file = "world.json", .write_obj = write_obj});
+    run({.scene_file = "world.json", .formats = formats});
     const RecordedRun recorded(folder());
     EXPECT_EQ(recorded.title(), "world.json");
     EXPECT_EQ(recorded.missing(), "");
@@ -101,7 +101,7 @@ TEST_F(RecordedWorld, DoesNotTakeTheRecordOfAnotherRun) {
 }
 
 TEST_F(RecordedWorld, WithNothingToShowIsRefused) {
-  run({.write_obj = false, .write_record = false});
+  run({.write_record = false, .formats = {}});
   try {
     const RecordedRun recorded(folder());
     FAIL() << "shows " << recorded.frames();
@@ -119,11 +119,12 @@ TEST(RecordSize, IsAtMostAFifthMoreThanPositionsAndVelocities) {
   Simulator simulator(builder.build(), {.step = 0.005});
   const ScratchFolder scratch;
   constexpr int kManyFrames = 30;  // a second
-  RunOutput output(OutputFolder(scratch / "out", false), {.frames = kManyFrames, .write_obj = false}, simulator);
+  RunOutput output(OutputFolder(scratch / "out", false), {.frames = kManyFrames, .formats = {}}, simulator);
   FrameRunner runner(simulator);
   for (int frame = 1; frame <= kManyFrames; ++frame) {
     output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
   }
+  output.flush();
   const double states = kManyFrames * 33.0 * 33.0 * 6.0 * sizeof(double);
   EXPECT_LE(static_cast<double>(std::filesystem::file_size(scratch / "out/record.bin")), 1.2 * states);
 }

@@ -3,6 +3,9 @@
 
 #include "output/record/recorded_model.h"
 
+#include <memory>
+#include <string_view>
+
 namespace sprung::testing {
 
 /// A quad with UVs whose last two vertices are one particle, a rope that a spring and a rod hold, and an obstacle of each motion.
@@ -22,6 +25,17 @@ inline RecordedModel model_with_one_of_each() {
   quad.faces.texcoords = {{0.1, 0.2}, {1.0 / 3.0, -4.0}};
   quad.faces.groups = {"left", "right"};
   quad.faces.group_begin = {0, 1};
+  constexpr std::string_view kText =
+      "mtllib look/a.mtl\nv 0 0 0\nv 1 0 0 red\nv 0 1 0\nv 0 1 0\nvt .1 .2\nusemtl red paint\nf 1/1 2/1 3\nusemtl blue\nf 2 4/1 "
+      "3/1\n";
+  quad.source = std::make_shared<ObjSource>(ObjSource{
+      .file = ObjTemplate(kText, ObjTemplate::Normals::per_vertex),
+      .particle_of = {0, 1, 2, 2},
+      .materials = {.files = {{.place = "look/a.mtl", .text = "newmtl blue\n"}, {.place = "look/red.png", .is_texture = true}},
+                    .missing = {},
+                    .unusual = {},
+                    .outside = {}},
+      .faces = quad.faces});
   RecordedBody rope{.name = "rope", .first_particle = 3, .particle_count = 3, .particle_of = {3, 4, 5}, .faces = {}};
   rope.lines.resize(2, 2);
   rope.lines << 0, 1, 1, 2;

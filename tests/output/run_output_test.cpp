@@ -5,7 +5,6 @@
 #include "base/file_size_limit.h"
 #include "base/scratch_folder.h"
 #include "geometry/mesh/edge_division.h"
-#include "output/obj_sequence.h"
 #include "output/recorded_run.h"
 #include "output/run_recorder.h"
 #include "output/small_world.h"
@@ -103,6 +102,7 @@ TEST_F(RunOutputFiles, FrameOneIsTheStateAtTimeZeroAndEachNumberReadsBackEqual) 
   FrameRunner runner(simulator_);
   for (int frame = 1; frame <= 3; ++frame) {
     output.write_frame(simulator_, frame == 1 ? runner.first_frame() : runner.next_frame());
+    output.flush();
     for (const Body& body : simulator_.network().bodies) {
       const std::vector<double> read =
           read_lines(file(body.name + "/" + body.name + ".000" + std::to_string(frame) + ".obj")).positions;
@@ -149,9 +149,13 @@ TEST(CoarseLattices, HaveTheVerticesFacesAndNormalsOfTheirMeshInFrames) {
   const Body& body = simulator.network().bodies[0];
   ASSERT_GT(body.contact_vertex_count(), 4);
   EXPECT_EQ(body.exported_vertex_count(), 4);
-  EXPECT_EQ(body_obj_text(simulator, body, nullptr), text);
-  const ObjSource source{.file = ObjTemplate(text, ObjTemplate::Normals::per_vertex), .particle_of = {}};
-  EXPECT_EQ(body_obj_text(simulator, body, &source), source.text(mesh.vertices, triangulate(mesh.faces)));
+  const auto obj_text = [&](const ObjSources& sources) {
+    const RunRecorder recorder(simulator, sources, {});
+    return make_exporter("obj", {.model = recorder.model()})->frame({.state = recorder.frame(simulator)}).front().bytes;
+  };
+  EXPECT_EQ(obj_text({}), text);
+  const ObjSource source{.file = ObjTemplate(text, ObjTemplate::Normals::per_vertex), .particle_of = {}, .faces = mesh.faces};
+  EXPECT_EQ(obj_text({{"coarse", std::make_shared<ObjSource>(source)}}), source.text(mesh.vertices, triangulate(mesh.faces)));
   EXPECT_EQ(RunRecorder(simulator, {}, {}).model().bodies[0].particle_of, (std::vector<Index>{0, 1, 2, 3}));
 }
 
@@ -189,8 +193,10 @@ TEST(TornBodies, LoseFacesAndKeepVertices) {
   const std::string text =
       "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 3 1 0\nv 4 1 0\n"
       "f 1 2 7 6\nf 2 3 8 7\nf 3 4 9 8\nf 4 5 10 9\n";
-  const ObjSources sources{{"strip", std::make_shared<ObjSource>(
-                                         ObjSource{.file = ObjTemplate(text, ObjTemplate::Normals::as_given), .particle_of = {}})}};
+  const ObjSources sources{
+      {"strip", std::make_shared<ObjSource>(ObjSource{.file = ObjTemplate(text, ObjTemplate::Normals::as_given),
+                                                      .particle_of = {},
+                                                      .faces = simulator.network().bodies[0].surface.faces})}};
   constexpr int kFrames = 12;
   RunOutput output(OutputFolder(scratch / "out", false), {.frames = kFrames, .steps_per_frame = 1, .sources = sources}, simulator);
   FrameRunner runner(simulator);
@@ -198,6 +204,7 @@ TEST(TornBodies, LoseFacesAndKeepVertices) {
   nlohmann::json expected = nlohmann::json::array();
   for (int frame = 1; frame <= kFrames; ++frame) {
     output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+    output.flush();
     for (const Body& body : simulator.network().bodies) {
       char name[32];
       std::snprintf(name, sizeof name, "%04d.obj", frame);
@@ -254,6 +261,7 @@ TEST(RunOutput, DeformingObstaclesAreWrittenAsTheyAreInEachFrame) {
   // Eighths of a second: the tip goes 1 m and the whole 1 m in each frame, in numbers that are exact.
   for (int frame = 1; frame <= 3; ++frame) {
     output.write_frame(simulator, frame == 1 ? runner.first_frame() : runner.next_frame());
+    output.flush();
     const double moved = frame - 1.0;
     const ObjLines lines = read_lines(scratch / ("out/obstacles/heart/heart.000" + std::to_string(frame) + ".obj"));
     EXPECT_THAT(lines.positions, ElementsAre(moved, 0, 0, 1.0 + moved, 0, 0, moved, 1, 0, moved, 0, 1.0 + moved)) << frame;
@@ -310,6 +318,7 @@ TEST_F(RunOutputFiles, FloorReachesUnderTheWholeScene) {
 TEST_F(RunOutputFiles, DigitsGrowWithTheNumberOfFrames) {
   RunOutput output = open(100'000);
   output.write_frame(simulator_, FrameRunner(simulator_).first_frame());
+  output.flush();
   EXPECT_TRUE(std::filesystem::exists(file("rope/rope.000001.obj")));
 }
 
@@ -338,6 +347,7 @@ TEST_F(RunOutputFiles, SummaryReportsTheProgressOfTheRun) {
   FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
   output.write_frame(simulator_, runner.next_frame());
+  output.flush();
   EXPECT_EQ(summary()["outcome"], "running");
   output.finish("interrupted");
   const nlohmann::json json = summary();
@@ -371,12 +381,14 @@ TEST_F(RunOutputFiles, SummaryReportsTheHandoverToNewton) {
                    {.frames = 9, .steps_per_frame = 4, .stretch_solver = simulator_.stretch_solver()}, simulator_);
   FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
+  output.flush();
   EXPECT_EQ(summary()["stretch_solver"], "gauss_seidel, then newton for what keeps missing the limit");
   EXPECT_THAT(summary()["newton_from"], IsEmpty());
   std::int64_t solves = 0;
   for (int frame = 2; frame <= 9; ++frame) {
     const FrameDiagnostics next = runner.next_frame();
     output.write_frame(simulator_, next);
+    output.flush();
     if (solves == 0 && next.limit_solves > 0) {
       EXPECT_EQ(summary()["newton_from"],
                 nlohmann::json::parse(R"([{"body": "cloth", "step": )" +
@@ -393,13 +405,15 @@ TEST_F(RunOutputFiles, ThatFitNoMoreTakeTheirWholeFrameBack) {
   RunOutput output = open(3);
   FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
+  output.flush();
   const std::vector<std::string> before = listing(scratch_ / "out");
   const std::string rows = read_text(file("diagnostics.csv"));
   const FrameDiagnostics next = runner.next_frame();
   {
     // The rope (the first body) still fits, the cloth does not.
     const FileSizeLimit limit(std::filesystem::file_size(file("rope/rope.0001.obj")) + 100);
-    EXPECT_THROW(output.write_frame(simulator_, next), FileError);
+    output.write_frame(simulator_, next);
+    EXPECT_THROW(output.flush(), FileError);
   }
   EXPECT_EQ(listing(scratch_ / "out"), before);
   EXPECT_EQ(read_text(file("diagnostics.csv")), rows);
@@ -411,19 +425,22 @@ TEST_F(RunOutputFiles, FrameWhoseRowFitsNoMoreIsTakenBack) {
   RunOutput output = open(3);
   FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
+  output.flush();
   const std::vector<std::string> before = listing(scratch_ / "out");
   const std::uintmax_t room = std::filesystem::file_size(file("diagnostics.csv"));
   const std::string record = read_text(file("record.bin"));
   std::filesystem::resize_file(file("diagnostics.csv"), 100'000);
   {
     const FileSizeLimit limit(100'010);
-    EXPECT_THROW(output.write_frame(simulator_, runner.next_frame()), FileError);
+    output.write_frame(simulator_, runner.next_frame());
+    EXPECT_THROW(output.flush(), FileError);
   }
   EXPECT_EQ(std::filesystem::file_size(file("diagnostics.csv")), 100'000U);
   EXPECT_EQ(listing(scratch_ / "out"), before);
   EXPECT_EQ(read_text(file("record.bin")), record);
   std::filesystem::resize_file(file("diagnostics.csv"), room);
   output.write_frame(simulator_, runner.next_frame());
+  output.flush();
   EXPECT_EQ(summary()["frames_written"], 2);
 }
 
@@ -453,11 +470,13 @@ TEST_F(RunOutputFiles, ForcesOfAFrameWhoseRowFitsNoMoreAreTakenBack) {
   RunOutput output = open(3);
   FrameRunner runner(simulator_);
   output.write_frame(simulator_, runner.first_frame());
+  output.flush();
   const std::string forces = read_text(file("forces.csv"));
   std::filesystem::resize_file(file("diagnostics.csv"), 100'000);
   {
     const FileSizeLimit limit(100'010);
-    EXPECT_THROW(output.write_frame(simulator_, runner.next_frame()), FileError);
+    output.write_frame(simulator_, runner.next_frame());
+    EXPECT_THROW(output.flush(), FileError);
   }
   EXPECT_EQ(read_text(file("forces.csv")), forces);
 }
@@ -478,6 +497,7 @@ TEST_F(RunOutputFiles, RunWithTheSameNamesReplacesThemWhenAsked) {
   {
     RunOutput output(OutputFolder(scratch_ / "out", true), {.frames = 1}, simulator_);
     output.write_frame(simulator_, FrameRunner(simulator_).first_frame());
+    output.flush();
   }
   EXPECT_THAT(listing(scratch_ / "out"), Not(Contains("rope/rope.0002.obj")));
   EXPECT_THAT(listing(scratch_ / "out"), Not(Contains(kAnimationFile)));
@@ -504,15 +524,6 @@ TEST(RunOutput, NamesThatCannotBeFoldersAreAllReported) {
   EXPECT_THAT(listing(scratch.path()), IsEmpty());
 }
 
-TEST(VertexLines, AreTheSameForEveryNumberOfVerticesAndChunks) {
-  Points points(3, 10'000);
-  for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] = std::sin(static_cast<double>(i)) / 3.0;
-  std::string expected;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) expected += vertex_lines(points.col(i));
-  EXPECT_EQ(vertex_lines(points), expected);
-  EXPECT_EQ(vertex_lines(Points(3, 0)), "");
-}
-
 TEST_F(RunOutputFiles, AFullDiskKeepsTheFormerCheckpoint) {
   RunOutput output(OutputFolder(scratch_ / "out", false), {.frames = 3, .steps_per_frame = 2, .checkpoint_interval = 1e-9},
                    simulator_);
@@ -521,6 +532,7 @@ TEST_F(RunOutputFiles, AFullDiskKeepsTheFormerCheckpoint) {
   EXPECT_EQ(output.write_due_checkpoint(simulator_, "memory"), "");
   const std::string former = read_text(file("checkpoint.bin"));
   output.write_frame(simulator_, runner.next_frame());
+  output.flush();
   std::string failure;
   {
     const FileSizeLimit full(100);

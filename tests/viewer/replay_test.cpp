@@ -42,6 +42,7 @@ TEST(Replay, SpringsAndPinsOfAWeldedMeshAreAtItsVertices) {
       {.scene = loaded.scene.resolved, .steps_per_frame = loaded.simulator.settings().steps_per_frame, .sources = loaded.sources},
       loaded.simulator);
   output.write_frame(loaded.simulator, FrameRunner(loaded.simulator).first_frame());
+  output.flush();
   const Replay replay(folder.path() / "run");
   EXPECT_THAT(replay.scene_text(), HasSubstr("\"complete\":true"));
   const Topology topology = replay.topology();

@@ -32,6 +32,13 @@ std::string fill_pattern(const std::string& pattern, int frame) {
   return pattern.substr(0, begin) + std::string(width - number.size(), '0') + number + pattern.substr(end);
 }
 
+bool is_folder_name(const std::string& name) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
+}
+
 bool stays_inside(const std::string& pattern) {
   const fs::path path(pattern);
   return !path.empty() && path.is_relative() && path.has_filename() &&

@@ -14,6 +14,9 @@ namespace sprung {
 /// The file name of a frame. Requires frame >= 0. A number with more digits than the pattern has `#` takes more room.
 [[nodiscard]] std::string fill_pattern(const std::string& pattern, int frame);
 
+/// Whether a body or an obstacle of this name can have a folder: it consists of letters, digits, `_` and `-`.
+[[nodiscard]] bool is_folder_name(const std::string& name);
+
 /// Whether the pattern is a relative path without `.` and `..`, so that its files lie below the folder.
 [[nodiscard]] bool stays_inside(const std::string& pattern);
 

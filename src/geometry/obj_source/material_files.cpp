@@ -1,5 +1,6 @@
 #include "geometry/obj_source/material_files.h"
 
+#include "base/error.h"
 #include "base/files/text_encoding.h"
 #include "base/format.h"
 #include "geometry/import/text_words.h"
@@ -7,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -120,7 +123,7 @@ class Finder {
       const std::string_view name = range.of(text);
       const auto texture = find_file(file.parent_path(), name);
       const std::string place = texture ? place_of(name) : "";
-      (void)add(texture, name, place.empty() ? "" : (folder / place).string());
+      if (add(texture, name, place.empty() ? "" : (folder / place).string())) found_.files.back().is_texture = true;
       if (place.empty() || place == name) continue;
       copy.append(text, copied, range.begin - copied) += place;
       copied = range.end;
@@ -155,6 +158,16 @@ MaterialFiles find_material_files(const fs::path& obj_file, std::string_view obj
   Finder finder;
   finder.read_obj(obj_file, obj_text);
   return finder.take();
+}
+
+std::string content_of(const MaterialFile& file) {
+  if (file.text) return *file.text;
+  errno = 0;
+  std::ifstream stream(file.source, std::ios::binary);
+  std::ostringstream bytes;
+  if (stream.peek() != std::ifstream::traits_type::eof()) bytes << stream.rdbuf();
+  if (!stream.is_open() || stream.bad()) throw FileError("copy", file.source.string(), std::strerror(errno));
+  return std::move(bytes).str();
 }
 
 }  // namespace sprung

@@ -11,9 +11,10 @@ namespace sprung {
 
 /// A file to copy beside an OBJ file.
 struct MaterialFile {
-  std::filesystem::path source;
+  std::filesystem::path source{};
   std::string place;                  ///< path relative to the folder of the OBJ file, in it
   std::optional<std::string> text{};  ///< what to write, if it is not the bytes of the source
+  bool is_texture = false;            ///< else it is an `mtllib` file
 };
 
 struct MaterialFiles {
@@ -27,5 +28,8 @@ struct MaterialFiles {
 /// the copy of an MTL file. A file is looked for by its name, with `\` as `/`, and last by its base name, beside the file that
 /// names it.
 [[nodiscard]] MaterialFiles find_material_files(const std::filesystem::path& obj_file, std::string_view obj_text);
+
+/// The bytes of a file. Throws FileError.
+[[nodiscard]] std::string content_of(const MaterialFile& file);
 
 }  // namespace sprung

@@ -23,6 +23,7 @@ class ObjTemplate {
   ObjTemplate(std::string_view text, Normals normals);
 
   [[nodiscard]] Index vertex_count() const { return static_cast<Index>(position_at_.size()); }
+  [[nodiscard]] Index face_count() const { return static_cast<Index>(faces_.size()); }
   [[nodiscard]] bool writes_normals() const { return !normal_at_.empty(); }
   /// The file without the faces of these numbers, which ascend; a face is an `f` line.
   [[nodiscard]] ObjTemplate without_faces(const std::vector<Index>& removed) const;

@@ -3,6 +3,7 @@
 
 #include "output/record/recorded_model.h"
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,13 +19,14 @@ struct ExportedRun {
 
 struct ExportedFrame {
   int number = 1;                          ///< counted from 1
-  RecordedFrame state;                     ///< positions and all else, as in record.bin
+  RecordedFrame state{};                   ///< positions and all else, as in record.bin
   std::vector<std::vector<Index>> torn{};  ///< of each body the numbers of the faces that are gone, ascending
 };
 
 struct ExportedFile {
   std::string path;  ///< relative to the folder of the export, with /
   std::string bytes;
+  std::filesystem::path copy_of{};  ///< the file that it is a copy of, instead of `bytes`; empty: none
 };
 
 /// Makes the files of one format. Knows no disk: whoever calls it writes what it returns. Two exporters that get the same run and

@@ -29,6 +29,14 @@ Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json();
 
 Json or_null(Index index) { return index == kNone ? Json() : Json(index); }
 
+/// What arrays_of() says of a body's file in bytes is not here.
+Json source_json(const ObjSource& source) {
+  Json libraries = Json::array();
+  Json textures = Json::array();
+  for (const MaterialFile& file : source.materials.files) (file.is_texture ? textures : libraries).push_back(file.place);
+  return {{"normals", source.file.writes_normals()}, {"libraries", libraries}, {"textures", textures}};
+}
+
 Json body_json(const RecordedBody& body) {
   return {{"name", body.name},
           {"material", body.material},
@@ -37,7 +45,8 @@ Json body_json(const RecordedBody& body) {
           {"groups", body.faces.groups},
           {"group_begin", body.faces.group_begin},
           {"face_materials", body.face_materials},
-          {"face_material_begin", body.face_material_begin}};
+          {"face_material_begin", body.face_material_begin},
+          {"obj", body.source ? source_json(*body.source) : Json()}};
 }
 
 Json attachment_json(const Attachment& attachment) {
@@ -56,6 +65,18 @@ Json attachment_json(const Attachment& attachment) {
           {"until", or_null(attachment.until)}};
 }
 
+std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// The file of a body with all vertices at 0, from which the same template is made, and its libraries.
+void add_source(const ObjSource& source, std::size_t body, ArrayBlock& block) {
+  const Points nowhere = Points::Zero(3, source.file.vertex_count());
+  block.add(body_arrays(body) + "obj", bytes_of(source.file.text(nowhere, nowhere)));
+  std::size_t library = 0;
+  for (const MaterialFile& file : source.materials.files) {
+    if (!file.is_texture) block.add(library_array(body, library++), bytes_of(content_of(file)));
+  }
+}
+
 ArrayBlock arrays_of(const RecordedModel& model) {
   ArrayBlock block;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -68,6 +89,7 @@ ArrayBlock arrays_of(const RecordedModel& model) {
     for (const std::array<double, 2>& uv : body.faces.texcoords) texcoords.insert(texcoords.end(), uv.begin(), uv.end());
     block.add(body_arrays(b) + "texcoords", texcoords);
     block.add(body_arrays(b) + "lines", body.lines);
+    if (body.source) add_source(*body.source, b, block);
   }
   block.add("springs/ends", model.springs.ends);
   block.add("springs/rest_lengths", model.springs.rest_lengths);

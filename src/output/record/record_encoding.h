@@ -14,7 +14,8 @@ namespace sprung {
 /// 16 digits that tell a head from those of other runs (FNV-1a).
 [[nodiscard]] std::string fingerprint(std::string_view head);
 
-/// The begin of a record: all that precedes the frames. `like` is a frame of the run.
+/// The begin of a record: all that precedes the frames. `like` is a frame of the run. Reads the `mtllib` files of bodies; throws
+/// FileError if one cannot be read.
 [[nodiscard]] std::string encode_head(const RecordedModel& model, const RecordedFrame& like);
 
 }  // namespace sprung

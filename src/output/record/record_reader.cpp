@@ -1,6 +1,7 @@
 #include "output/record/record_reader.h"
 
 #include "base/error.h"
+#include "base/files/file_pattern.h"
 #include "output/record/array_block.h"
 #include "output/record/record_encoding.h"
 #include "output/record/record_format.h"
@@ -106,6 +107,40 @@ RecordedBody read_body(const Json& json) {
   json.at("face_materials").get_to(body.face_materials);
   json.at("face_material_begin").get_to(body.face_material_begin);
   return body;
+}
+
+std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+/// Whether files by these names stay in the folder of a body.
+bool are_inside(const std::vector<std::string>& places) {
+  return std::ranges::all_of(places, [](const std::string& place) { return stays_inside(place); });
+}
+
+/// The file of a body. Requires that all else of the body has been read.
+void read_source(const Json& json, const ArrayBlockReader& arrays, std::size_t number, RecordedBody& body) {
+  if (!json.contains("obj") || json["obj"].is_null()) return;  // contains: an older version
+  const Json& obj = json["obj"];
+  const auto libraries = obj.at("libraries").get<std::vector<std::string>>();
+  const auto textures = obj.at("textures").get<std::vector<std::string>>();
+  const std::string name = body_arrays(number) + "obj";
+  if (!are_inside(libraries) || !are_inside(textures)) arrays.fail(name, "names files outside of the folder of its body");
+  const auto normals = obj.at("normals").get<bool>() ? ObjTemplate::Normals::per_vertex : ObjTemplate::Normals::as_given;
+  auto source = std::make_shared<ObjSource>(ObjSource{.file = ObjTemplate(text_of(arrays.bytes(name)), normals),
+                                                      .particle_of = body.particle_of,
+                                                      .faces = body.faces,
+                                                      .lines = body.lines});
+  if (source->file.vertex_count() != std::ssize(body.particle_of) || source->file.face_count() != body.faces.face_count()) {
+    arrays.fail(name, "does not fit the vertices and faces");
+  }
+  for (Index& particle : source->particle_of) {
+    particle -= body.first_particle;
+    if (particle < 0 || particle >= body.particle_count) arrays.fail(name, "has a vertex of another body");
+  }
+  for (std::size_t k = 0; k < libraries.size(); ++k) {
+    source->materials.files.push_back({.place = libraries[k], .text = text_of(arrays.bytes(library_array(number, k)))});
+  }
+  for (const std::string& texture : textures) source->materials.files.push_back({.place = texture, .is_texture = true});
+  body.source = std::move(source);
 }
 
 RecordedPin read_pin(const Json& json) {
@@ -221,6 +256,12 @@ bool is_consistent(const RecordedModel& model) {
          });
 }
 
+/// An export writes folders by the names of bodies and obstacles.
+bool has_folder_names(const RecordedModel& model) {
+  return std::ranges::all_of(model.bodies, [](const RecordedBody& body) { return is_folder_name(body.name); }) &&
+         std::ranges::all_of(model.obstacles, [](const RecordedObstacle& obstacle) { return is_folder_name(obstacle.name); });
+}
+
 }  // namespace
 
 struct RecordReader::Contents {
@@ -275,11 +316,15 @@ struct RecordReader::Contents {
     frame_table = read_table(json.at("frame_arrays"));
     model = read_model(json);
     if (!is_consistent(model)) fail(file, "", "names particles, bodies or obstacles that do not exist");
-    read_arrays({read_bytes(file, arrays_begin, array_bytes), read_table(json.at("arrays")), file});
+    if (!has_folder_names(model)) fail(file, "", "has a name that must name a folder and does not");
+    read_arrays({read_bytes(file, arrays_begin, array_bytes), read_table(json.at("arrays")), file}, json.at("bodies"));
   }
 
-  void read_arrays(const ArrayBlockReader& arrays) {
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) read_arrays_of(arrays, b, model.particle_count, model.bodies[b]);
+  void read_arrays(const ArrayBlockReader& arrays, const Json& bodies) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      read_arrays_of(arrays, b, model.particle_count, model.bodies[b]);
+      read_source(bodies[b], arrays, b, model.bodies[b]);
+    }
     read_springs(arrays, model.particle_count, model.springs);
     for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
       const std::string name = obstacle_arrays(k);

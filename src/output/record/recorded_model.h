@@ -3,6 +3,7 @@
 
 #include "geometry/mesh/polygon_mesh.h"
 #include "geometry/mesh/triangle_mesh.h"
+#include "geometry/obj_source/obj_source.h"
 #include "network/model/attachment.h"
 #include "network/model/springs.h"
 
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,10 @@ struct RecordedBody {
   Edges lines{2, 0};                          ///< of the vertices
   std::vector<std::string> face_materials{};  ///< names as the OBJ file gives them to its faces (`usemtl`)
   std::vector<Index> face_material_begin{};   ///< the first face of each of these
+
+  /// Its file; null for bodies without one, and in records of versions before 0.2. Read from a record, it has the texts of its
+  /// `mtllib` files, and of textures their places alone.
+  std::shared_ptr<const ObjSource> source{};
 };
 
 struct RecordedSprings {

@@ -106,6 +106,17 @@ TEST(Exporter, LeavesOutTornFacesWhereAFrameHasFacesOfItsOwn) {
   EXPECT_THAT(usd, AllOf(HasSubstr("1: [3, 3]"), HasSubstr("2: [3]"), Not(HasSubstr("3: [3]"))));
 }
 
+// A run has the textures, and its record has their names.
+TEST(Exporter, OfObjWritesBodiesAsTheirFiles) {
+  const auto obj = exported("obj");
+  EXPECT_THAT(obj.at("quad/quad.0001.obj"),
+              AllOf(HasSubstr("mtllib look/a.mtl"), HasSubstr(" red\nvn "), HasSubstr("usemtl blue\nf")));
+  EXPECT_THAT(obj.at("quad/quad.0002.obj"), AllOf(HasSubstr("usemtl red paint\nf 1/1/1"), Not(HasSubstr("usemtl blue\nf"))));
+  EXPECT_EQ(obj.at("quad/look/a.mtl"), "newmtl blue\n");
+  EXPECT_FALSE(obj.contains("quad/look/red.png"));
+  EXPECT_THAT(make_exporter("obj", sample())->losses(false), ::testing::ElementsAre(HasSubstr("quad/look/red.png")));
+}
+
 TEST(Exporter, SaysWhatAFormatCannotHold) {
   const auto losses = [](const std::string& format, bool tears) { return make_exporter(format, sample())->losses(tears); };
   EXPECT_THAT(losses("ply", true), ::testing::ElementsAre(HasSubstr("no materials")));

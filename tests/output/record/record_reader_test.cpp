@@ -59,6 +59,12 @@ TEST_F(Record, HoldsTheModelBitForBit) {
   EXPECT_EQ(model.bodies[0].faces.texcoords, model_.bodies[0].faces.texcoords);
   EXPECT_THAT(model.bodies[0].face_materials, ElementsAre("red paint", "blue"));
   EXPECT_EQ(model.bodies[1].lines, model_.bodies[1].lines);
+  const Points points = Points::Random(3, 3);
+  const Triangles triangles = Eigen::Vector3i(0, 1, 2);
+  for (const std::vector<Index>& torn : {std::vector<Index>{}, {0}}) {
+    EXPECT_EQ(model.bodies[0].source->text(points, triangles, torn), model_.bodies[0].source->text(points, triangles, torn));
+  }
+  EXPECT_EQ(model.bodies[0].source->materials.files[0].text, "newmtl blue\n");
   EXPECT_EQ(model.springs.ends, model_.springs.ends);
   EXPECT_EQ(model.springs.rest_lengths, model_.springs.rest_lengths);
   EXPECT_EQ(model.springs.kinds, model_.springs.kinds);
@@ -102,6 +108,19 @@ TEST_F(Record, OfAnotherVersionOrKindSaysWhatToDo) {
   newer[8] = 2;
   EXPECT_THAT(refusal(newer), HasSubstr("version 2"));
   EXPECT_THAT(refusal("solid cube with more than 24 letters"), HasSubstr("no record of Sprung"));
+}
+
+// An export writes files by these names.
+TEST_F(Record, NamesNoFilesOutsideOfItsFolder) {
+  const auto with = [&](const std::string& name, const std::string& other) {
+    std::string forged = bytes_;
+    forged.replace(forged.find(name), name.size(), other);
+    return refusal(forged);
+  };
+  EXPECT_THAT(with("look/a.mtl\"]", "../../.mtl\"]"), HasSubstr("outside of the folder of its body"));
+  EXPECT_THAT(with("look/red.png", "/etc/red.png"), HasSubstr("outside of the folder of its body"));
+  EXPECT_THAT(with("\"rope\"", "\"../r\""), HasSubstr("name a folder"));
+  EXPECT_THAT(with("\"floor\"", "\"../fl\""), HasSubstr("name a folder"));
 }
 
 // Any byte of the head and of a frame may be wrong: the reader refuses the file or returns arrays that fit each other.
