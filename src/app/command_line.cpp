@@ -85,7 +85,7 @@ class Parser {
 
  private:
   void add_run() {
-    CLI::App* run = app_.add_subcommand("run", "Simulates a scene and writes it as OBJ sequences");
+    CLI::App* run = app_.add_subcommand("run", "Simulates a scene and writes its frames, as OBJ sequences or other formats");
     add_scene(run, run_.scene);
     run->add_option("--out", run_.out, "Folder for the frames; must be empty or not exist, unless the run is resumed")
         ->required()
@@ -263,7 +263,7 @@ class Parser {
     return names;
   }
 
-  CLI::App app_{"Simulates spring-damper networks that collide with meshes, and writes them as OBJ sequences.", "sprung"};
+  CLI::App app_{"Simulates spring-damper networks that collide with meshes, and writes animations.", "sprung"};
   RunOptions run_;
   ValidateOptions validate_;
   InfoOptions info_;

@@ -16,7 +16,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -27,6 +26,15 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kHtml = "html";
+
+/// Throws UsageError if the folder of the export is named like one of its files.
+void check_is_folder(const fs::path& out, const Exporter& exporter) {
+  for (const std::string& pattern : exporter.patterns()) {
+    if (fs::path(pattern).extension() != out.extension() || out.extension().empty()) continue;
+    throw UsageError(
+        fmt::format("--out {} must name a folder, into which the export writes {}", out.string(), fill_pattern(pattern, 1)));
+  }
+}
 
 /// Throws FileError if a file that the export writes is there or belongs to the run.
 void check_free(const fs::path& file, const ExportOptions& options) {
@@ -82,20 +90,16 @@ struct Interrupted {};
 /// Files that formats share, as the OBJ file of frame 1 of pc2 and mdd, are written twice with the same bytes.
 void export_with(const RecordedRun& run, Exporter& exporter, const fs::path& out, Unfinished& unfinished) {
   for (const std::string& loss : exporter.losses(!run.torn_faces().empty())) print_message(loss);
-  std::set<fs::path> written;
+  // Those of an export that this one replaces: it may be longer, and after an interrupt none is left.
+  for (const std::string& pattern : exporter.patterns()) {
+    std::error_code ignored;
+    for (const fs::path& file : files_in(out, pattern)) fs::remove(file, ignored);
+  }
   export_frames(run, exporter, [&](const ExportedFile& file) {
     if (interrupted()) throw Interrupted{};
     write_file(out / file.path, content_of(file));
     unfinished.add(out / file.path);
-    written.insert(out / file.path);
   });
-  // Frames of a longer export, which this one replaces.
-  for (const std::string& pattern : exporter.patterns()) {
-    std::error_code ignored;
-    for (const fs::path& file : files_in(out, pattern)) {
-      if (!written.contains(file)) fs::remove(file, ignored);
-    }
-  }
 }
 
 }  // namespace
@@ -119,6 +123,7 @@ ExitCode export_run(const ExportOptions& options) {
     if (std::ranges::find(options.formats, format) == options.formats.end()) continue;
     exporters.push_back(make_exporter(format, exported_run(run)));
     for (const std::string& pattern : exporters.back()->patterns()) patterns.push_back(pattern);
+    check_is_folder(out, *exporters.back());
     check_free(out, *exporters.back(), options);
   }
   std::error_code ignored;

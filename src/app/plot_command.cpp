@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/files/file_writer.h"
 #include "base/format.h"
+#include "output/output_folder.h"
 #include "output/plot_script.h"
 #include "output/run_summary.h"
 
@@ -95,10 +96,11 @@ ExitCode plot(const PlotOptions& options) {
   draw(scratch.path() / "script", picture);
   std::ifstream stream(drawn, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  write_file(picture, bytes);
   if (fs::equivalent(picture.parent_path().empty() ? "." : picture.parent_path(), options.folders.front(), ignored)) {
+    const OutputFolder locked = OutputFolder::as_it_is(options.folders.front());  // no run writes into it meanwhile
     add_files_to_run(options.folders.front(), {picture.filename().string()});
   }
+  write_file(picture, bytes);
   print_message(fmt::format("{} shows {}", picture.string(), counted(runs.size(), "run")));
   return ExitCode::done;
 }

@@ -28,6 +28,15 @@ bool has_format(const RunOptions& options, const std::string& format) {
   return std::ranges::find(options.formats, format) != options.formats.end();
 }
 
+/// Those that exporters make.
+std::vector<std::string> formats_of(const RunOptions& options) {
+  std::vector<std::string> formats;
+  for (const std::string& format : exporter_formats()) {
+    if (has_format(options, format)) formats.push_back(format);
+  }
+  return formats;
+}
+
 /// Throws UsageError if they do not go together.
 void check_formats(const RunOptions& options, bool writes_record) {
   if (has_format(options, "none") && options.formats.size() > 1) {
@@ -37,19 +46,10 @@ void check_formats(const RunOptions& options, bool writes_record) {
   if (has_format(options, "none")) {
     throw UsageError("--format none with \"record\": false writes no frames; leave out one of them");
   }
-  for (const std::string& format : options.formats) {
-    if (format == "obj" || format == "ply" || format == "vtk") continue;
+  for (const std::string& format : formats_of(options)) {
+    if (make_exporter(format, {})->writes_each_frame()) continue;
     throw UsageError(fmt::format("--format {} is made from record.bin at the end of the run; leave out \"record\": false", format));
   }
-}
-
-/// Those that exporters make.
-std::vector<std::string> formats_of(const RunOptions& options) {
-  std::vector<std::string> formats;
-  for (const std::string& format : exporter_formats()) {
-    if (has_format(options, format)) formats.push_back(format);
-  }
-  return formats;
 }
 
 RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int threads) {
@@ -152,12 +152,16 @@ void print_last_frame(const LoadedScene& loaded, int frames, const std::string& 
 }
 
 void write_run(Run& run, const RunOptions& options) {
-  // The error that ended the run matters more than a failure to record it.
+  // The error that ended the run matters more than a failure to record it. A failure says that frames are missing, once; what is
+  // left to write then is the outcome.
   const auto finish_without_error = [&](const std::string& outcome) {
-    try {
-      run.output.finish(outcome);
-    } catch (const FileError&) {
-      return;
+    for (const std::string& text : {outcome, "failed: " + outcome}) {
+      try {
+        run.output.finish(text);
+        return;
+      } catch (const std::exception& error) {
+        print_warning(error.what());
+      }
     }
   };
   try {

@@ -15,7 +15,7 @@ namespace sprung {
 /// next call of add() or wait() rethrows; after that call it takes jobs again. Its members are for one thread.
 class OrderedWorker {
  public:
-  /// At most so many jobs wait. Requires most_waiting >= 1.
+  /// At most so many jobs wait. Requires most_waiting >= 1. Throws std::system_error if no thread can be started.
   explicit OrderedWorker(std::size_t most_waiting);
 
   /// Ends all jobs. What they throw is lost.
@@ -23,8 +23,7 @@ class OrderedWorker {
   OrderedWorker(const OrderedWorker&) = delete;
   OrderedWorker& operator=(const OrderedWorker&) = delete;
 
-  /// Returns when the job waits for its turn; that takes as long as too many wait. Rethrows what a former job threw, and does not
-  /// add the job then.
+  /// Blocks while `most_waiting` jobs wait. Rethrows what a former job threw, and does not add the job then.
   void add(std::function<void()> job);
 
   /// Returns when all jobs are done. Rethrows what one of them threw.

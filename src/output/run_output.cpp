@@ -26,7 +26,7 @@ constexpr const char* kForcesFile = "forces.csv";
 // Each has a copy of all positions and velocities.
 constexpr std::size_t kMostWaitingFrames = 2;
 
-// How the outcome of a run begins whose files could not be written.
+// The outcome of a run begins so if its files could not be written.
 constexpr const char* kFailed = "failed";
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -152,6 +152,10 @@ void RunOutput::take_back_frames(const RunCheckpoint& to) {
       if (file > last) folder_.remove(file.lexically_relative(folder_.path()));
     }
   }
+  for (const std::unique_ptr<Exporter>& exporter : exporters_) {  // of the run as it ended before
+    if (exporter->writes_each_frame()) continue;
+    for (const std::string& pattern : exporter->patterns()) folder_.remove(pattern);
+  }
   for (const std::string& pattern : patterns()) {  // of a program that was killed
     for (const std::filesystem::path& file : matching_files(folder_.path(), temporary_path(pattern).string())) {
       folder_.remove(file.lexically_relative(folder_.path()));
@@ -171,43 +175,46 @@ std::vector<std::string> RunOutput::patterns() const {
   return patterns;
 }
 
-void RunOutput::note_progress(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
-  const bool is_first_step = progress_.substeps == 0;
-  ++progress_.frames_written;
-  progress_.steps = simulator.state().step;
-  progress_.substeps += diagnostics.substeps;
+/// The progress after one more frame.
+RunProgress RunOutput::progress_with(const Simulator& simulator, const FrameDiagnostics& diagnostics) const {
+  RunProgress next = progress_;
+  ++next.frames_written;
+  next.steps = simulator.state().step;
+  next.substeps += diagnostics.substeps;
   if (diagnostics.substeps > 0) {
-    progress_.smallest_step =
-        is_first_step ? diagnostics.smallest_step : std::min(progress_.smallest_step, diagnostics.smallest_step);
+    next.smallest_step =
+        progress_.substeps > 0 ? std::min(progress_.smallest_step, diagnostics.smallest_step) : diagnostics.smallest_step;
   }
-  progress_.limit_solves += diagnostics.limit_solves;
-  progress_.newton_from = handed_over(simulator);
-  list_torn(simulator, progress_.frames_written, progress_.torn_faces);
-  progress_.broken_attachments = broken_attachments(simulator);
+  next.limit_solves += diagnostics.limit_solves;
+  next.newton_from = handed_over(simulator);
+  list_torn(simulator, next.frames_written, next.torn_faces);
+  next.broken_attachments = broken_attachments(simulator);
+  return next;
 }
 
 void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
-  note_progress(simulator, diagnostics);
-  Frame frame{.exported = {.number = progress_.frames_written},
+  RunProgress next = progress_with(simulator, diagnostics);
+  Frame frame{.exported = {.number = next.frames_written},
               .diagnostics = csv_row(diagnostics),
               .forces = has_forces_ ? forces_csv_rows(diagnostics.frame, diagnostics.time, simulator.reactions()) : "",
-              .progress = progress_};
+              .progress = next};
   if (recorder_) {
     frame.exported.state = recorder_->frame(simulator);
-    frame.exported.torn = torn_in(recorder_->model(), progress_.torn_faces, frame.exported.number);
+    frame.exported.torn = torn_in(recorder_->model(), next.torn_faces, frame.exported.number);
   }
   try {
     worker_.add([this, frame = std::move(frame)] { write(frame); });
-  } catch (...) {
+  } catch (const FileError&) {  // of a frame before
     take_back_progress();
     throw;
   }
+  progress_ = std::move(next);
 }
 
 void RunOutput::flush() {
   try {
     worker_.wait();
-  } catch (...) {
+  } catch (const std::exception&) {
     take_back_progress();
     throw;
   }

@@ -73,7 +73,7 @@ class RunOutput {
   /// Writes nothing yet.
   RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFolder folder);
 
-  void note_progress(const Simulator& simulator, const FrameDiagnostics& diagnostics);
+  [[nodiscard]] RunProgress progress_with(const Simulator& simulator, const FrameDiagnostics& diagnostics) const;
   void write(const Frame& frame);
   void take_back_progress();
   void write_summary(RunProgress& progress);

@@ -157,6 +157,18 @@ TEST_F(CommandLine, FullDiskEndsWithFiveAndLeavesNoHalfFrame) {
   EXPECT_THAT(summary()["outcome"].get<std::string>(), StartsWith("failed: "));
 }
 
+// The simulation runs ahead of what is written.
+TEST_F(CommandLine, AFullDiskIsToldAlsoIfTheRunDiverges) {
+  const Ending ending = Program({"run", save(diverging_scene()), "--out", out(), "--set", "stability=\"warn\"", "--set",
+                                 "output.record=false", "--set", "bodies.rope.shape.particles=1000", "--checkpoint", "0"},
+                                {.file_size = 20'000})
+                            .wait();
+  EXPECT_NE(ending.code, 0);
+  EXPECT_THAT(ending.err, HasSubstr("/rope.0001.obj: cannot write"));
+  EXPECT_EQ(summary()["frames_written"], 0);
+  EXPECT_THAT(summary()["outcome"].get<std::string>(), StartsWith("failed: "));
+}
+
 TEST_F(CommandLine, RunThatWouldWriteNoFramesIsRefused) {
   const Ending ending = run({"run", save(rope_scene()), "--out", out(), "--format", "none", "--set", "output.record=false"});
   EXPECT_EQ(ending.code, 2);

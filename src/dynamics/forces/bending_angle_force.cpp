@@ -1,6 +1,7 @@
 #include "dynamics/forces/bending_angle_force.h"
 
 #include "base/parallel.h"
+#include "dynamics/forces/angle_bend.h"
 #include "dynamics/forces/force_derivatives.h"
 #include "dynamics/forces/hinge_angle.h"
 #include "dynamics/forces/material_dampers.h"
@@ -16,68 +17,10 @@
 namespace sprung {
 namespace {
 
-// One thread computes all elements that touch a block of particles. Elements across two blocks are computed twice.
-constexpr Index kParticleBlock = 2048;
 constexpr Index kHingesAtOnce = 1024;
 
-/// f(bond) and its derivative: the gradient of f is `slope` times the bond.
-struct Fullness {
-  double value = 1.0;
-  double slope = 0.0;  ///< [1/m^2]
-};
-
-Fullness fullness_of(const Vector3& bond, double rest_length) {
-  const double square = rest_length * rest_length;
-  const double most = 4.0 * bond.squaredNorm();
-  return most < square ? Fullness{most / square, 8.0 / square} : Fullness{};
-}
-
-struct Bend {
-  Bend(const AngleBends& bends, Index element, const Points& x)
-      : a(x.col(bends.middle[element]) - x.col(bends.before[element])),
-        b(x.col(bends.after[element]) - x.col(bends.middle[element])),
-        normal(a.cross(b)),
-        sine(normal.norm()),
-        full_a(fullness_of(a, bends.length_before[element])),
-        full_b(fullness_of(b, bends.length_after[element])) {}
-
-  [[nodiscard]] double angle() const { return std::atan2(sine, a.dot(b)); }
-  [[nodiscard]] double fullness() const { return full_a.value * full_b.value; }
-  [[nodiscard]] double energy(double stiffness) const { return 0.5 * stiffness * angle() * angle() * fullness(); }
-
-  Vector3 a;
-  Vector3 b;
-  Vector3 normal;
-  double sine;  ///< |a| |b| sin(angle)
-  Fullness full_a;
-  Fullness full_b;
-};
-
-/// The gradient of the angle at before, middle and after [1/m]. Requires a non-zero sine.
-std::array<Vector3, 3> turns(const Bend& bend) {
-  const Vector3 before = (1.0 / (bend.sine * bend.a.squaredNorm())) * bend.normal.cross(bend.a);
-  const Vector3 after = (1.0 / (bend.sine * bend.b.squaredNorm())) * bend.normal.cross(bend.b);
-  return {before, -(before + after), after};
-}
-
-std::array<Index, 3> particles_of(const AngleBends& bends, Index element) {
-  return {bends.before[element], bends.middle[element], bends.after[element]};
-}
-
-struct BendConstants {
-  double stiffness;
-  double damping;
-  bool bounds_damping;
-};
-
-// The gradient of the angle grows with 1 / length.
-double shortness(const Vector3& bond, double rest_length) {
-  return std::min(1.0, bond.squaredNorm() / (rest_length * rest_length));
-}
-
 /// Forces on before and after; the force on the middle is minus their sum.
-std::array<Vector3, 2> bend_forces(const AngleBends& bends, Index element, const BendConstants& constants, const Kinematics& at) {
-  const auto [stiffness, damping, bounds_damping] = constants;
+std::array<Vector3, 2> bend_forces(const AngleBends& bends, Index element, double stiffness, double damping, const Kinematics& at) {
   const Bend bend(bends, element, at.x);
   if (!(bend.sine > 0.0)) return {Vector3::Zero(), Vector3::Zero()};
   const auto [turn_before, turn_middle, turn_after] = turns(bend);
@@ -85,10 +28,7 @@ std::array<Vector3, 2> bend_forces(const AngleBends& bends, Index element, const
   double moment = stiffness * angle;
   if (damping > 0.0) {
     const Vector3 v = at.v.col(bends.middle[element]);
-    const double share =
-        bounds_damping ? shortness(bend.a, bends.length_before[element]) * shortness(bend.b, bends.length_after[element]) : 1.0;
-    moment += share * damping *
-              (turn_before.dot(at.v.col(bends.before[element]) - v) + turn_after.dot(at.v.col(bends.after[element]) - v));
+    moment += damping * (turn_before.dot(at.v.col(bends.before[element]) - v) + turn_after.dot(at.v.col(bends.after[element]) - v));
   }
   moment *= bend.fullness();
   const double half = 0.5 * stiffness * angle * angle;
@@ -138,24 +78,18 @@ ElementConstants constants_of_bends(const SpringNetwork& network) {
 BendingAngleForce::BendingAngleForce(const SpringNetwork& network) : BendingAngleForce(network, constants_of_bends(network)) {}
 
 BendingAngleForce::BendingAngleForce(const SpringNetwork& network, ElementConstants constants)
-    : network_(network), constants_(std::move(constants)), first_face_(static_cast<std::size_t>(network.angle_bends.count())) {
-  const auto blocks = static_cast<std::size_t>(network_.particle_count() / kParticleBlock + 1);
-  bend_blocks_.resize(blocks);
-  hinge_blocks_.resize(blocks);
-  const auto assign = [&](Index element, const auto& particles, std::vector<std::vector<Index>>& to) {
-    if (std::ranges::all_of(particles, [&](Index i) { return network_.is_asleep(i); })) return;
-    for (const Index particle : particles) {
-      std::vector<Index>& block = to[particle / kParticleBlock];
-      if (block.empty() || block.back() != element) block.push_back(element);
-    }
-  };
+    : network_(network),
+      constants_(std::move(constants)),
+      first_face_(static_cast<std::size_t>(network.angle_bends.count())),
+      bend_blocks_(network.particle_count()),
+      hinge_blocks_(network.particle_count()) {
   const AngleBends& bends = network_.angle_bends;
   for (Index element = 0; element < bends.count(); ++element) {
-    if (acts(static_cast<std::size_t>(element))) assign(element, particles_of(bends, element), bend_blocks_);
+    if (acts(static_cast<std::size_t>(element))) bend_blocks_.add(network_, element, particles_of(bends, element));
   }
   assign_faces();
   for (Index hinge = 0; hinge < network_.hinges.count(); ++hinge) {
-    if (faces_of_hinge_[hinge][0].face != kNone) assign(hinge, network_.hinges.particles[hinge], hinge_blocks_);
+    if (faces_of_hinge_[hinge][0].face != kNone) hinge_blocks_.add(network_, hinge, network_.hinges.particles[hinge]);
   }
 }
 
@@ -194,19 +128,11 @@ void BendingAngleForce::add(const Kinematics& at, Points& forces) const {
 
 void BendingAngleForce::add_bends(const Kinematics& at, Points& forces) const {
   const AngleBends& bends = network_.angle_bends;
-  parallel_chunks(static_cast<Index>(bend_blocks_.size()), 1, [&](Index begin, Index end) {
-    for (Index block = begin; block < end; ++block) {
-      const auto add_to = [&](Index particle, const Vector3& force) {
-        if (particle / kParticleBlock == block) forces.col(particle) += force;
-      };
-      for (const Index element : bend_blocks_[block]) {
-        const auto [on_before, on_after] = bend_forces(
-            bends, element, {constants_.stiffness[element], constants_.damping[element], constants_.bounds_damping}, at);
-        add_to(bends.before[element], on_before);
-        add_to(bends.middle[element], -(on_before + on_after));
-        add_to(bends.after[element], on_after);
-      }
-    }
+  bend_blocks_.for_each(forces, [&](Index element, const auto& add_to) {
+    const auto [on_before, on_after] = bend_forces(bends, element, constants_.stiffness[element], constants_.damping[element], at);
+    add_to(bends.before[element], on_before);
+    add_to(bends.middle[element], -(on_before + on_after));
+    add_to(bends.after[element], on_after);
   });
 }
 
@@ -256,20 +182,13 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
       moment += constants_.damping[element] * shares.cwiseProduct(curvature.transpose() * (curvature * rates));
     }
   });
-  parallel_chunks(static_cast<Index>(hinge_blocks_.size()), 1, [&](Index begin, Index end) {
-    for (Index block = begin; block < end; ++block) {
-      for (const Index hinge : hinge_blocks_[block]) {
-        double moment = 0.0;
-        for (const auto& [face, side] : faces_of_hinge_[hinge]) {
-          if (face != kNone) moment += moments[face][side];
-        }
-        const std::array<Vector3, 4>& gradient = motions[hinge].gradient;
-        for (std::size_t i = 0; i < 4; ++i) {
-          const Index particle = hinges.particles[hinge][i];
-          if (particle / kParticleBlock == block) forces.col(particle) -= moment * gradient[i];
-        }
-      }
+  hinge_blocks_.for_each(forces, [&](Index hinge, const auto& add_to) {
+    double moment = 0.0;
+    for (const auto& [face, side] : faces_of_hinge_[hinge]) {
+      if (face != kNone) moment += moments[face][side];
     }
+    const std::array<Vector3, 4>& gradient = motions[hinge].gradient;
+    for (std::size_t i = 0; i < 4; ++i) add_to(hinges.particles[hinge][i], -(moment * gradient[i]));
   });
 }
 

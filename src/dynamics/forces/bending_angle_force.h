@@ -12,6 +12,7 @@
 // For face bends see FaceBends and `hinge_angle.h`.
 #pragma once
 
+#include "dynamics/forces/element_blocks.h"
 #include "dynamics/forces/element_constants.h"
 #include "dynamics/forces/force.h"
 #include "network/model/spring_network.h"
@@ -65,9 +66,9 @@ class BendingAngleForce final : public Force {
 
   const SpringNetwork& network_;
   ElementConstants constants_;
-  std::size_t first_face_;                       ///< the number of angle bends
-  std::vector<std::vector<Index>> bend_blocks_;  ///< angle bends that touch each block of particles
-  std::vector<std::vector<Index>> hinge_blocks_;
+  std::size_t first_face_;  ///< the number of angle bends
+  ElementBlocks bend_blocks_;
+  ElementBlocks hinge_blocks_;
   std::vector<char> acting_faces_;  ///< by face bend: whether it has stiffness or damping, and a particle that is awake
   std::vector<std::array<FaceSide, 2>> faces_of_hinge_;  ///< by hinge, those that act
   bool faces_resist_ = false;                            ///< whether any has stiffness

@@ -23,6 +23,7 @@ LinearElement LinearElement::pair(Index first, Index second, double stiffness, d
 std::string Force::name() const { return "added forces"; }
 
 void Force::prepare(double) {}
+void Force::hold(const Points&) {}
 
 void Force::follow(const Conditions&) {}
 

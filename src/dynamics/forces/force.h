@@ -81,6 +81,10 @@ class Force {
   /// Whether `add` adds the same force at all positions, velocities and times. Default: no.
   [[nodiscard]] virtual bool is_constant() const;
 
+  /// Several calls of `add` at these positions [m], 3 x n, follow, each with other velocities: a force may keep what depends on the
+  /// positions alone. Not thread-safe. Default: does nothing.
+  virtual void hold(const Points& positions);
+
   /// Adds the forces [N] on all particles to `forces`, 3 x n. Thread-safe. Gives the same bits for any number of threads.
   virtual void add(const Kinematics& at, Points& forces) const = 0;
 

@@ -1,5 +1,6 @@
 #include "dynamics/forces/material_dampers.h"
 
+#include "dynamics/forces/angle_dampers.h"
 #include "dynamics/forces/bending_angle_force.h"
 #include "dynamics/forces/spring_force.h"
 
@@ -23,7 +24,7 @@ ElementConstants material_springs(const SpringNetwork& network) {
 ElementConstants material_bends(const SpringNetwork& network) {
   const ElementConstants all = constants_of_bends(network);
   const std::size_t count = all.damping.size();
-  ElementConstants constants{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0), true};
+  ElementConstants constants{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   for_material_bends(network, [&](Index e) { constants.damping[e] = all.damping[e]; });
   return constants;
 }
@@ -124,6 +125,9 @@ Forces material_dampers(const SpringNetwork& network, double most) {
   const auto any = [](const std::vector<double>& values) { return std::ranges::any_of(values, [](double c) { return c > 0.0; }); };
   Forces forces;
   if (any(springs.damping)) forces.push_back(std::make_unique<SpringForce>(network, std::move(springs)));
+  std::vector<double> of_angles(bends.damping.begin(), bends.damping.begin() + static_cast<std::ptrdiff_t>(angles));
+  std::fill_n(bends.damping.begin(), angles, 0.0);
+  if (any(of_angles)) forces.push_back(std::make_unique<AngleDampers>(network, std::move(of_angles)));
   if (any(bends.damping)) forces.push_back(std::make_unique<BendingAngleForce>(network, std::move(bends)));
   return forces;
 }

@@ -45,7 +45,7 @@ void for_material_bends(const SpringNetwork& network, const Function& function) 
 
 /// The dampers of materials alone. `most` [1/s] bounds the rate at which they damp any mode. Dampers at particles whose sum of
 /// damping could exceed it are weakened in proportion. All others have the damping of the network. Keeps a reference to the
-/// network.
+/// network. Call hold() before add().
 [[nodiscard]] Forces material_dampers(const SpringNetwork& network, double most);
 
 }  // namespace sprung

@@ -82,6 +82,7 @@ void DamperPasses::apply(const Points& x, double dt, SimulationState& state) {
   const double time = step_begin(state, dt);
   first_ = state.v;
   second_last_ = state.v;
+  for (const auto& damper : dampers_) damper->hold(x);
   for (const DamperPass& pass : series.passes) {
     sum_forces(dampers_, {.x = x, .v = state.v, .time = time}, total_);
     for_particles(network_, [&](Index i) {

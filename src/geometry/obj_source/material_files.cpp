@@ -160,6 +160,27 @@ MaterialFiles find_material_files(const fs::path& obj_file, std::string_view obj
   return finder.take();
 }
 
+std::map<std::string, std::array<double, 3>> diffuse_colours(const MaterialFiles& materials) {
+  std::map<std::string, std::array<double, 3>> colours;
+  for (const MaterialFile& file : materials.files) {
+    if (file.is_texture) continue;
+    const std::string text = utf8_text(content_of(file));
+    std::string name;
+    ObjLine line;
+    for (std::size_t at = 0; at < text.size(); at = line.whole.end) {
+      read_obj_line(text, at, line);
+      if (line.word(text, 0) == "newmtl" && line.words.size() > 1) {
+        name = TextRange{line.words[1].begin, line.words.back().end}.of(text);
+      }
+      if (line.word(text, 0) != "Kd") continue;
+      std::array<std::optional<double>, 3> read;
+      for (std::size_t k = 0; k < read.size(); ++k) read[k] = parse_number<double>(line.word(text, k + 1));
+      if (read[0] && read[1] && read[2]) colours.try_emplace(name, std::array{*read[0], *read[1], *read[2]});
+    }
+  }
+  return colours;
+}
+
 std::string content_of(const MaterialFile& file) {
   if (file.text) return *file.text;
   errno = 0;

@@ -1,7 +1,9 @@
 // The files that give an OBJ mesh its look: its `mtllib` files, and the textures that these name.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +30,10 @@ struct MaterialFiles {
 /// the copy of an MTL file. A file is looked for by its name, with `\` as `/`, and last by its base name, beside the file that
 /// names it.
 [[nodiscard]] MaterialFiles find_material_files(const std::filesystem::path& obj_file, std::string_view obj_text);
+
+/// The diffuse colours (`Kd`) of the materials of the `mtllib` files, by their names: red, green, blue, mostly from 0 to 1. Of a
+/// name that is given twice, the first. Throws FileError if a file cannot be read.
+[[nodiscard]] std::map<std::string, std::array<double, 3>> diffuse_colours(const MaterialFiles& materials);
 
 /// The bytes of a file. Throws FileError.
 [[nodiscard]] std::string content_of(const MaterialFile& file);

@@ -44,11 +44,11 @@ class Exporter {
   /// Whether frame() returns all but lists of files, so that a run can write its frames as they come.
   [[nodiscard]] virtual bool writes_each_frame() const = 0;
 
-  /// The files that belong to a frame. Call it for frames 1, 2, 3 ...
+  /// The files that belong to a frame. Call it for frames 1, 2, 3 ... Throws FileError if a library that makes the bytes fails.
   [[nodiscard]] virtual std::vector<ExportedFile> frame(const ExportedFrame& frame) = 0;
 
   /// The files that belong to the whole. `frames` is the number of the last frame; where writes_each_frame(), frame() need not have
-  /// been called for all of them.
+  /// been called for all of them. Throws as frame().
   [[nodiscard]] virtual std::vector<ExportedFile> end(int frames) = 0;
 };
 

@@ -90,16 +90,18 @@ class GltfExporter::Builder {
     model_.animations[0].name = "simulation";
   }
 
-  /// A material of this name, which is made once.
-  int add_material(const std::string& name, bool is_body) {
-    const auto same = [&](const tinygltf::Material& other) { return other.name == name; };
+  /// A material of this name and colour, which is made once.
+  int add_material(const std::string& name, const std::array<double, 4>& colour) {
+    const std::vector<double> base(colour.begin(), colour.end());
+    const auto same = [&](const tinygltf::Material& other) {
+      return other.name == name && other.pbrMetallicRoughness.baseColorFactor == base;
+    };
     const auto found = std::ranges::find_if(model_.materials, same);
     if (found != model_.materials.end()) return static_cast<int>(found - model_.materials.begin());
     tinygltf::Material material;
     material.name = name;
     material.doubleSided = true;
-    const std::array<double, 4>& colour = is_body ? kBodyColour : kObstacleColour;
-    material.pbrMetallicRoughness.baseColorFactor = {colour.begin(), colour.end()};
+    material.pbrMetallicRoughness.baseColorFactor = base;
     material.pbrMetallicRoughness.metallicFactor = 0.0;
     material.pbrMetallicRoughness.roughnessFactor = 0.8;
     model_.materials.push_back(std::move(material));
@@ -220,6 +222,7 @@ std::vector<std::string> GltfExporter::losses(bool tears) const {
   }
   if (tears) losses.emplace_back("faces that tear stay in animation.glb");
   if (has_groups(run_.model)) losses.emplace_back("animation.glb has no groups of faces");
+  if (has_materials(run_.model)) losses.emplace_back("animation.glb has the colours of materials (Kd), and no textures");
   return losses;
 }
 
@@ -277,27 +280,35 @@ std::vector<tinygltf::Primitive> GltfExporter::primitives(std::size_t k, Builder
   }
   std::vector<tinygltf::Primitive> all;
   const bool is_body = shape.body != kNone;
-  const auto add = [&](const std::vector<std::uint32_t>& corners, int mode, const std::string& material) {
+  const std::array<double, 4>& plain = is_body ? kBodyColour : kObstacleColour;
+  const auto add = [&](const std::vector<std::uint32_t>& corners, int mode, const std::string& material,
+                       const std::array<double, 4>& colour) {
     if (corners.empty()) return;
     tinygltf::Primitive& primitive = all.emplace_back(shared);
     primitive.mode = mode;
-    primitive.material = builder.add_material(material, is_body);
+    primitive.material = builder.add_material(material, colour);
     primitive.indices =
         builder.add(corners, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
   };
   const Index faces = shape.faces.face_count();
   if (!is_body || run_.model.bodies[shape.body].face_materials.empty()) {
-    add(triangles(shape.faces, vertices, 0, faces), TINYGLTF_MODE_TRIANGLES, shape.name);
+    add(triangles(shape.faces, vertices, 0, faces), TINYGLTF_MODE_TRIANGLES, shape.name, plain);
   } else {
     const RecordedBody& body = run_.model.bodies[shape.body];
+    std::map<std::string, std::array<double, 3>> colours;
+    if (body.source) colours = diffuse_colours(body.source->materials);
     for (std::size_t m = 0; m < body.face_materials.size(); ++m) {
       const Index end = m + 1 < body.face_material_begin.size() ? body.face_material_begin[m + 1] : faces;
-      add(triangles(shape.faces, vertices, body.face_material_begin[m], end), TINYGLTF_MODE_TRIANGLES, body.face_materials[m]);
+      const auto found = colours.find(body.face_materials[m]);
+      const auto colour =
+          found == colours.end() ? plain : std::array{found->second[0], found->second[1], found->second[2], plain[3]};
+      add(triangles(shape.faces, vertices, body.face_material_begin[m], end), TINYGLTF_MODE_TRIANGLES, body.face_materials[m],
+          colour);
     }
   }
   std::vector<std::uint32_t> ends;
   for (const Index end : shape.lines.reshaped()) ends.push_back(static_cast<std::uint32_t>(end));
-  add(ends, TINYGLTF_MODE_LINE, shape.name + " lines");
+  add(ends, TINYGLTF_MODE_LINE, shape.name + " lines", plain);
   return all;
 }
 
@@ -311,20 +322,20 @@ void GltfExporter::animate_targets(std::size_t k, int node, Builder& builder) co
 }
 
 void GltfExporter::animate_pose(std::size_t k, int node, Builder& builder) const {
-  std::vector<float> places;
-  std::vector<float> turns;
+  std::vector<float> positions;
+  std::vector<float> rotations;
   Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
   for (const RigidTransform& pose : poses_[k]) {
-    const Vector3 place = pose.translation();
-    for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(place[axis]));
-    Eigen::Quaterniond turn(pose.rotation());
-    if (turn.dot(before) < 0.0) turn.coeffs() *= -1.0;  // the shorter way between two frames
-    before = turn;
-    for (int axis = 0; axis < 4; ++axis) turns.push_back(static_cast<float>(turn.coeffs()[axis]));
+    const Vector3 position = pose.translation();
+    for (int axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(position[axis]));
+    Eigen::Quaterniond rotation(pose.rotation());
+    if (rotation.dot(before) < 0.0) rotation.coeffs() *= -1.0;  // the shorter way between two frames
+    before = rotation;
+    for (int axis = 0; axis < 4; ++axis) rotations.push_back(static_cast<float>(rotation.coeffs()[axis]));
   }
   const int times = builder.add_times(times_);
-  builder.animate(node, "translation", times, builder.add(places, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 3));
-  builder.animate(node, "rotation", times, builder.add(turns, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4, 4));
+  builder.animate(node, "translation", times, builder.add(positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 3));
+  builder.animate(node, "rotation", times, builder.add(rotations, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4, 4));
 }
 
 }  // namespace sprung

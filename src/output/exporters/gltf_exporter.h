@@ -26,7 +26,7 @@ class GltfExporter final : public Exporter {
   class Builder;
 
   [[nodiscard]] int interval(Index vertices) const;
-  // Of the shape of a number.
+  // `k` is the number of a shape.
   [[nodiscard]] std::vector<tinygltf::Primitive> primitives(std::size_t k, Builder& builder) const;
   void animate_targets(std::size_t k, int node, Builder& builder) const;
   void animate_pose(std::size_t k, int node, Builder& builder) const;

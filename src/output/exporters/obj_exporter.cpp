@@ -53,7 +53,7 @@ std::vector<std::string> ObjExporter::losses(bool /*tears*/) const {
     }
   }
   if (missing.empty()) return {};
-  return {"the record has no textures; copy these files: " + missing};
+  return {"the record has no textures; copy these from beside the OBJ files of the scene: " + missing};
 }
 
 std::vector<ExportedFile> ObjExporter::frame(const ExportedFrame& frame) {

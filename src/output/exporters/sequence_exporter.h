@@ -17,7 +17,7 @@ class SequenceExporter : public Exporter {
   /// `ending` has its dot.
   SequenceExporter(ExportedRun run, std::string ending);
 
-  /// The file of a shape in a frame.
+  /// The file of a shape, one of shapes(), in a frame.
   [[nodiscard]] virtual std::string bytes_of(const ExportedShape& shape, const ExportedFrame& frame) const = 0;
 
   [[nodiscard]] std::string pattern_of(const ExportedShape& shape) const;

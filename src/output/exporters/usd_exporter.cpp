@@ -56,7 +56,7 @@ std::string prim_name(const std::string& name) {
   return result;
 }
 
-/// Attributes that samples of one frame describe do not vary.
+/// An attribute with time samples.
 std::string attribute(const std::string& declaration, const std::string& samples) {
   return "        " + declaration + ".timeSamples = {\n" + samples + "        }\n";
 }
@@ -103,6 +103,11 @@ void UsdExporter::add_faces(const PolygonFaces& faces, int frame, Samples& to) c
     to.texcoords += ')';
   }
   to.texcoords += "],\n";
+}
+
+std::vector<std::string> UsdExporter::losses(bool /*tears*/) const {
+  if (!has_materials(run_.model)) return {};
+  return {"animation.usda has the faces of each material as a subset, without colours and textures"};
 }
 
 std::vector<ExportedFile> UsdExporter::frame(const ExportedFrame& frame) {

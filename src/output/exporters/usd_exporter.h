@@ -13,6 +13,7 @@ namespace sprung {
 class UsdExporter final : public Exporter {
  public:
   explicit UsdExporter(ExportedRun run);
+  [[nodiscard]] std::vector<std::string> losses(bool tears) const override;
   [[nodiscard]] std::vector<std::string> patterns() const override { return {"animation.usda"}; }
   [[nodiscard]] bool writes_each_frame() const override { return false; }
   [[nodiscard]] std::vector<ExportedFile> frame(const ExportedFrame& frame) override;

@@ -105,8 +105,15 @@ std::vector<std::string> VtkExporter::patterns() const {
 std::vector<std::string> VtkExporter::losses(bool /*tears*/) const {
   const bool has_uvs =
       std::ranges::any_of(run().model.bodies, [](const RecordedBody& body) { return !body.faces.texcoord.empty(); });
-  if (!has_materials(run().model) && !has_groups(run().model) && !has_uvs) return {};
-  return {"the VTK files have no UVs, no groups and no materials of faces"};
+  std::vector<std::string> losses;
+  for (const RecordedBody& body : run().model.bodies) {
+    if (vertices_are_particles(body)) continue;
+    losses.push_back("the VTK files of " + body.name + " have no springs and tension: its vertices are not its particles");
+  }
+  if (has_materials(run().model) || has_groups(run().model) || has_uvs) {
+    losses.emplace_back("the VTK files have no UVs, no groups and no materials of faces");
+  }
+  return losses;
 }
 
 std::string VtkExporter::bytes_of(const ExportedShape& shape, const ExportedFrame& frame) const {

@@ -29,7 +29,7 @@ Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json();
 
 Json or_null(Index index) { return index == kNone ? Json() : Json(index); }
 
-/// What arrays_of() says of a body's file in bytes is not here.
+/// Of a body's file, without its bytes, which are arrays.
 Json source_json(const ObjSource& source) {
   Json libraries = Json::array();
   Json textures = Json::array();

@@ -73,5 +73,21 @@ TEST_F(MaterialFilesOf, TwoFilesDoNotShareAPlace) {
   EXPECT_THAT(found.unusual, ElementsAre("../1.png"));
 }
 
+TEST(DiffuseColours, AreThoseOfTheLibraries) {
+  const MaterialFiles materials{
+      .files = {{.place = "a.mtl",
+                 .text = "# Kd 9 9 9\nKd 1 1 1\nnewmtl red paint\nKa 0 0 0\nKd 1 0.25 0\nnewmtl odd\nKd spectral x\n"},
+                {.place = "b.mtl", .text = "newmtl blue\r\nKd 0 0 .5\r\nnewmtl red paint\nKd 0 0 0\n"},
+                {.place = "red.png", .text = "newmtl no\nKd 0 0 0\n", .is_texture = true}},
+      .missing = {},
+      .unusual = {},
+      .outside = {}};
+  const auto colours = diffuse_colours(materials);
+  EXPECT_EQ(colours.at("red paint"), (std::array{1.0, 0.25, 0.0}));
+  EXPECT_EQ(colours.at("blue"), (std::array{0.0, 0.0, 0.5}));
+  EXPECT_FALSE(colours.contains("odd"));
+  EXPECT_FALSE(colours.contains("no"));
+}
+
 }  // namespace
 }  // namespace sprung

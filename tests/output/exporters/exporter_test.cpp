@@ -121,8 +121,9 @@ TEST(Exporter, SaysWhatAFormatCannotHold) {
   const auto losses = [](const std::string& format, bool tears) { return make_exporter(format, sample())->losses(tears); };
   EXPECT_THAT(losses("ply", true), ::testing::ElementsAre(HasSubstr("no materials")));
   EXPECT_THAT(losses("pc2", true), ::testing::Contains(HasSubstr("tear")));
-  EXPECT_THAT(losses("gltf", false), ::testing::ElementsAre(HasSubstr("no groups")));
-  EXPECT_THAT(losses("usda", true), IsEmpty());
+  EXPECT_THAT(losses("gltf", false), ::testing::ElementsAre(HasSubstr("no groups"), HasSubstr("no textures")));
+  EXPECT_THAT(losses("usda", true), ::testing::ElementsAre(HasSubstr("without colours")));
+  EXPECT_THAT(losses("vtk", true), ::testing::ElementsAre(HasSubstr("of quad have no springs"), HasSubstr("no UVs")));
   EXPECT_THAT(make_exporter("gltf", sample(600))->losses(false), ::testing::Contains(HasSubstr("every 3. frame of quad")));
   for (const std::string& format : exporter_formats()) EXPECT_THAT(make_exporter(format, {})->losses(false), IsEmpty()) << format;
 }
