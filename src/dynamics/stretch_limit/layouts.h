@@ -1,6 +1,6 @@
 // The interface between kernels and the memory layouts of SpringBatches. Each layout has a group type with `find_squared`, the
 // squared lengths of the springs, and `move`, which moves their ends towards each other, or apart along their earlier direction:
-// see layout_runs.h, layout_pairs.h, layout_gathered.h. For the .cpp files of kernels alone, as simd.h.
+// see layout_runs.h, layout_gathered.h. For the .cpp files of kernels alone, as simd.h.
 #pragma once
 
 #include "base/types.h"

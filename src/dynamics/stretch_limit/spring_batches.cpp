@@ -82,17 +82,6 @@ std::vector<Piece> colour(const SpringNetwork& network, const std::vector<Piece>
   return left;
 }
 
-/// Whether the kSimdWidth singles from `begin` on join consecutive particles two by two.
-bool are_pairs(const Springs& springs, std::span<const Piece> singles, std::size_t begin) {
-  if (begin + kSimdWidth > singles.size()) return false;
-  const Index first = springs.first[singles[begin].begin];
-  for (Index i = 0; i < kSimdWidth; ++i) {
-    const Index s = singles[begin + i].begin;
-    if (springs.first[s] != first + 2 * i || springs.second[s] != first + 2 * i + 1) return false;
-  }
-  return true;
-}
-
 /// The largest difference of the numbers of two particles that a spring joins.
 Index bandwidth(const Springs& springs, const std::vector<Index>& limited) {
   Index widest = 1;
@@ -106,37 +95,20 @@ class Filler {
   Filler(const SpringNetwork& network, Index span, SpringBatches& batches) : network_(network), span_(span), batches_(batches) {}
 
   void add_colour(Colour& colour) {
-    add_runs(colour.runs);
+    std::vector<Piece> wide;
+    for (const Piece& run : colour.runs) {
+      const Index whole = run.count / kWideSimdWidth * kWideSimdWidth;
+      if (whole > 0) wide.push_back({run.begin, whole});
+      for (Index s = run.begin + whole; s < run.begin + run.count; ++s) colour.singles.push_back({s, 1});
+    }
+    add_runs(wide);
     std::ranges::stable_sort(colour.singles, {}, [&](const Piece& piece) { return network_.springs.first[piece.begin]; });
     add_singles(colour.singles);
   }
 
  private:
-  /// Cuts runs into what fills wide registers, what fills narrow ones, and the rest.
-  void add_runs(std::span<const Piece> runs) {
-    std::vector<Piece> eights;
-    std::vector<Piece> fours;
-    std::vector<Piece> threes;
-    std::vector<Piece> twos;
-    for (Piece run : runs) {
-      const auto cut = [&](Index count, std::vector<Piece>& pieces) {
-        if (count == 0) return;
-        pieces.push_back({run.begin, count});
-        run.begin += count;
-        run.count -= count;
-      };
-      cut(run.count / kWideSimdWidth * kWideSimdWidth, eights);
-      cut(run.count / kSimdWidth * kSimdWidth, fours);
-      cut(run.count, run.count == 3 ? threes : twos);
-    }
-    add_batches(eights, SpringBatches::Layout::runs_of_eight);
-    add_batches(fours, SpringBatches::Layout::runs_of_four);
-    add_batches(threes, SpringBatches::Layout::runs_of_three);
-    add_batches(twos, SpringBatches::Layout::runs_of_two);
-  }
-
   /// A batch holds whole runs.
-  void add_batches(std::span<const Piece> runs, SpringBatches::Layout layout) {
+  void add_runs(std::span<const Piece> runs) {
     for (std::size_t begin = 0; begin < runs.size();) {
       const Index from = batches_.count();
       const auto first = [&](std::size_t i) { return network_.springs.first[runs[i].begin]; };
@@ -144,44 +116,28 @@ class Filler {
       do {
         const Piece& run = runs[end++];
         for (Index s = run.begin; s < run.begin + run.count; ++s) append(s);
-        while (batches_.count() % kSimdWidth != 0) append(run.begin + run.count - 1);
       } while (end < runs.size() && batches_.count() + runs[end].count <= from + SpringBatches::kBatchSprings &&
                first(end) - first(begin) <= span_);
-      end_batch(from, layout);
+      end_batch(from, SpringBatches::Layout::runs);
       begin = end;
     }
   }
 
   void add_singles(std::span<const Piece> singles) {
-    std::vector<Index> pairs;
-    std::vector<Index> others;
-    for (std::size_t i = 0; i < singles.size();) {
-      if (!are_pairs(network_.springs, singles, i)) {
-        others.push_back(singles[i++].begin);
-        continue;
-      }
-      for (const std::size_t k : {0, 2, 1, 3}) pairs.push_back(singles[i + k].begin);
-      i += kSimdWidth;
-    }
-    add_batches(pairs, SpringBatches::Layout::pairs);
-    add_batches(others, SpringBatches::Layout::gathered);
-  }
-
-  void add_batches(const std::vector<Index>& springs, SpringBatches::Layout layout) {
-    for (std::size_t begin = 0; begin < springs.size();) {
+    for (std::size_t begin = 0; begin < singles.size();) {
       const Index from = batches_.count();
-      const std::size_t end = batch_end(springs, begin);
-      for (std::size_t i = begin; i < end; ++i) append(springs[i]);
-      while (batches_.count() % kSimdWidth != 0) append(springs[end - 1]);
-      end_batch(from, layout);
+      const std::size_t end = batch_end(singles, begin);
+      for (std::size_t i = begin; i < end; ++i) append(singles[i].begin);
+      while (batches_.count() % kSimdWidth != 0) append(singles[end - 1].begin);
+      end_batch(from, SpringBatches::Layout::gathered);
       begin = end;
     }
   }
 
   /// The end of the largest batch of whole groups.
-  [[nodiscard]] std::size_t batch_end(const std::vector<Index>& springs, std::size_t begin) const {
-    const auto first = [&](std::size_t i) { return network_.springs.first[springs[i]]; };
-    const std::size_t most = std::min(springs.size(), begin + SpringBatches::kBatchSprings);
+  [[nodiscard]] std::size_t batch_end(std::span<const Piece> singles, std::size_t begin) const {
+    const auto first = [&](std::size_t i) { return network_.springs.first[singles[i].begin]; };
+    const std::size_t most = std::min(singles.size(), begin + SpringBatches::kBatchSprings);
     std::size_t end = std::min(most, begin + kSimdWidth);
     while (end < most && first(end) - first(begin) <= span_) end = std::min(most, end + kSimdWidth);
     return end;

@@ -7,8 +7,8 @@
 
 namespace sprung {
 
-/// Entry s of each array belongs to limited spring s. The springs of a batch are contiguous. Its last spring, or the last of each
-/// run of two or three, is repeated to fill a multiple of kSimdWidth.
+/// Entry s of each array belongs to limited spring s. The springs of a batch are contiguous. The last spring of a gathered batch is
+/// repeated to fill a multiple of kSimdWidth.
 struct SpringBatches {
   std::vector<Index> spring;  ///< of the network
   std::vector<Index> first;
@@ -19,11 +19,7 @@ struct SpringBatches {
 
   /// How the particles of a batch's springs lie in memory.
   enum class Layout : std::uint8_t {
-    runs_of_eight,  ///< in each group, from s on, spring s + i joins first[s] + i and second[s] + i
-    runs_of_four,
-    runs_of_three,  ///< a fourth entry fills the group up
-    runs_of_two,    ///< two entries fill the group up
-    pairs,    ///< in each group of kSimdWidth, from s on, spring s + i joins first[s] + k and first[s] + k + 1: k = 0, 4, 2, 6
+    runs,     ///< in each group of kWideSimdWidth, from s on, spring s + i joins first[s] + i and second[s] + i
     gathered  ///< arbitrary
   };
 

@@ -2,7 +2,6 @@
 
 #include "base/machine/kernel.h"
 #include "dynamics/stretch_limit/layout_gathered.h"
-#include "dynamics/stretch_limit/layout_pairs.h"
 #include "dynamics/stretch_limit/layout_runs.h"
 
 #include <algorithm>
@@ -30,7 +29,7 @@ struct Extremes {
   }
 };
 
-/// For batches whose springs fill `Wide` groups, and for the rest.
+/// Of batches with `Wide` groups, and with narrow ones.
 template <class Wide>
 struct AllExtremes {
   Extremes<Wide> of_wide;
@@ -65,16 +64,14 @@ struct AllExtremes {
   return are_beyond(range, some);
 }
 
-/// Squared lengths of a batch's springs from `s` on, relative to the rest length, while they fill a group. Returns the first that
-/// does not. Without `lengths` only the extremes are kept.
+/// Squared lengths of a batch's springs, relative to the rest length. Without `lengths` only the extremes are kept.
 template <class Group>
-[[gnu::always_inline]] inline Index find_squared(const SpringBatches& batches, const Batch& batch, Index s, const double* positions,
-                                                 double* lengths, Extremes<typename Group::Lanes>& extremes) {
+[[gnu::always_inline]] inline void find_squared(const SpringBatches& batches, const Batch& batch, const double* positions,
+                                                double* lengths, Extremes<typename Group::Lanes>& extremes) {
   using Lanes = typename Group::Lanes;
-  if (s + kCountOf < Lanes >> batch.end) return s;
   Lanes per_length;
-  load_simd(&batches.per_length[s], per_length);
-  for (; s + kCountOf<Lanes> <= batch.end; s += kCountOf<Lanes>) {
+  load_simd(&batches.per_length[batch.begin], per_length);
+  for (Index s = batch.begin; s < batch.end; s += kCountOf<Lanes>) {
     if (!batch.same) load_simd(&batches.per_length[s], per_length);
     Lanes squared;
     Group::find_squared(batches, s, positions, squared);
@@ -82,17 +79,16 @@ template <class Group>
     extremes.include(squared, squared);
     if (lengths != nullptr) store_simd(squared, lengths + (s - batch.begin));
   }
-  return s;
 }
 
 /// Turns squared lengths into corrections 1 - allowed / length: of springs that are too long in `lengths`, and of those that are
 /// too short in `pushes`, at most their own length, unless there are none.
 template <class Lanes>
-[[gnu::always_inline]] inline Index find_beyond(const LengthRange& range, double relaxation, Index i, Index count, double* lengths,
-                                                double* pushes) {
+[[gnu::always_inline]] inline void find_beyond(const LengthRange& range, double relaxation, Index count, double* lengths,
+                                               double* pushes) {
   const double most_squared = range.most * range.most;
   const double least_squared = range.least * range.least;
-  for (; i + kCountOf<Lanes> <= count; i += kCountOf<Lanes>) {
+  for (Index i = 0; i < count; i += kCountOf<Lanes>) {
     Lanes squared, inverse;
     load_simd(lengths + i, squared);
     inverse_root(squared, inverse);
@@ -103,7 +99,6 @@ template <class Lanes>
     const Lanes push = too_short > -1.0 ? too_short : Lanes{} - 1.0;
     store_simd(relaxation * (squared < least_squared ? push : Lanes{}), pushes + i);
   }
-  return i;
 }
 
 /// The displacements of the ends.
@@ -115,13 +110,12 @@ template <class Lanes>
 }
 
 template <class Group>
-[[gnu::always_inline]] inline Index move(const SpringBatches& batches, const Batch& batch, Index s, const double* too_long,
-                                         const double* too_short, const double* before, double* positions) {
+[[gnu::always_inline]] inline void move(const SpringBatches& batches, const Batch& batch, const double* too_long,
+                                        const double* too_short, const double* before, double* positions) {
   using Lanes = typename Group::Lanes;
-  if (s + kCountOf < Lanes >> batch.end) return s;
   Lanes first_share;
-  load_simd(&batches.first_share[s], first_share);
-  for (; s + kCountOf<Lanes> <= batch.end; s += kCountOf<Lanes>) {
+  load_simd(&batches.first_share[batch.begin], first_share);
+  for (Index s = batch.begin; s < batch.end; s += kCountOf<Lanes>) {
     if (!batch.same) load_simd(&batches.first_share[s], first_share);
     Moves<Lanes> pulls;
     load_moves(too_long + (s - batch.begin), first_share, pulls);
@@ -133,31 +127,25 @@ template <class Group>
     load_moves(too_short + (s - batch.begin), first_share, pushes);
     Group::move(batches, s, pulls, pushes, before, positions);
   }
-  return s;
 }
 
 // Three sweeps over a batch, which stays in the first-level cache. In a single sweep each spring would wait for its own square
-// root, and hardware does not look far enough ahead to start the next. Springs that do not fill a wide group use narrow ones.
-template <class Wide, class Narrow, class All>
+// root, and hardware does not look far enough ahead to start the next.
+template <class Group, class All>
 [[gnu::always_inline]] inline void project(const SpringBatches& batches, const Batch& batch, const LengthRange& range,
                                            double relaxation, const double* before, double* positions, All& extremes) {
+  using Lanes = typename Group::Lanes;
   alignas(Double8) double lengths[SpringBatches::kBatchSprings];
-  Extremes<typename Wide::Lanes> of_wide;
-  Extremes<typename Narrow::Lanes> of_narrow;
-  const Index measured = find_squared<Wide>(batches, batch, batch.begin, positions, lengths, of_wide);
-  find_squared<Narrow>(batches, batch, measured, positions, lengths, of_narrow);
-  if (!are_beyond(range, of_wide) && !are_beyond(range, of_narrow)) return;
-  extremes.include(of_wide);
-  extremes.include(of_narrow);
+  Extremes<Lanes> of_batch;
+  find_squared<Group>(batches, batch, positions, lengths, of_batch);
+  if (!are_beyond(range, of_batch)) return;
+  extremes.include(of_batch);
 
   const LengthRange least_alone{.least = range.least, .most = HUGE_VAL};
   alignas(Double8) double pushes[SpringBatches::kBatchSprings];
-  double* const too_short = are_beyond(least_alone, of_wide) || are_beyond(least_alone, of_narrow) ? pushes : nullptr;
-  const Index count = batch.end - batch.begin;
-  const Index found = find_beyond<typename Wide::Lanes>(range, relaxation, 0, count, lengths, too_short);
-  find_beyond<typename Narrow::Lanes>(range, relaxation, found, count, lengths, too_short);
-  const Index moved = move<Wide>(batches, batch, batch.begin, lengths, too_short, before, positions);
-  move<Narrow>(batches, batch, moved, lengths, too_short, before, positions);
+  double* const too_short = are_beyond(least_alone, of_batch) ? pushes : nullptr;
+  find_beyond<Lanes>(range, relaxation, batch.end - batch.begin, lengths, too_short);
+  move<Group>(batches, batch, lengths, too_short, before, positions);
 }
 
 /// Calls `body` with the groups of each batch.
@@ -165,24 +153,10 @@ template <class Widest, class Body>
 [[gnu::always_inline]] inline void for_batches(const SpringBatches& batches, const BatchRange& batch_range, const Body& body) {
   for (Index p = batch_range.begin; p < batch_range.end; ++p) {
     const Batch& batch = batches.batch[p];
-    switch (batch.layout) {
-      case Layout::runs_of_eight:  // NOLINT(bugprone-branch-clone): two are alike where the widest vectors hold four
-        body.template operator()<RunGroup<Widest>, RunGroup<PackedVectors4>>(batch);
-        break;
-      case Layout::runs_of_four:
-        body.template operator()<RunGroup<PackedVectors4>, RunGroup<PackedVectors4>>(batch);
-        break;
-      case Layout::runs_of_three:
-        body.template operator()<RunGroup<PackedVectors4, 3>, RunGroup<PackedVectors4, 3>>(batch);
-        break;
-      case Layout::runs_of_two:
-        body.template operator()<RunGroup<PackedVectors4, 2>, RunGroup<PackedVectors4, 2>>(batch);
-        break;
-      case Layout::pairs:
-        body.template operator()<PairGroup<Widest>, PairGroup<PackedVectors4>>(batch);
-        break;
-      default:
-        body.template operator()<GatheredGroup, GatheredGroup>(batch);
+    if (batch.layout == Layout::runs) {
+      body.template operator()<RunGroup<Widest>>(batch);
+    } else {
+      body.template operator()<GatheredGroup>(batch);
     }
   }
 }
@@ -193,8 +167,8 @@ template <class Widest>
                                                              double* positions) {
   AllExtremes<typename Widest::Lanes> extremes;
   for_batches<Widest>(
-      batches, batch_range, [&]<class Wide, class Narrow>(const Batch& batch) __attribute__((always_inline)) {
-        project<Wide, Narrow>(batches, batch, range, relaxation, before, positions, extremes);
+      batches, batch_range, [&]<class Group>(const Batch& batch) __attribute__((always_inline)) {
+        project<Group>(batches, batch, range, relaxation, before, positions, extremes);
       });
   return extremes.lengths();
 }
@@ -204,11 +178,10 @@ template <class Widest>
                                                              const double* positions) {
   AllExtremes<typename Widest::Lanes> extremes;
   for_batches<Widest>(
-      batches, batch_range, [&]<class Wide, class Narrow>(const Batch& batch) __attribute__((always_inline)) {
-        Extremes<typename Wide::Lanes> of_wide;
-        const Index measured = find_squared<Wide>(batches, batch, batch.begin, positions, nullptr, of_wide);
-        extremes.include(of_wide);
-        find_squared<Narrow>(batches, batch, measured, positions, nullptr, extremes.of_narrow);
+      batches, batch_range, [&]<class Group>(const Batch& batch) __attribute__((always_inline)) {
+        Extremes<typename Group::Lanes> of_batch;
+        find_squared<Group>(batches, batch, positions, nullptr, of_batch);
+        extremes.include(of_batch);
       });
   return extremes.lengths();
 }
