@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+import tempfile
 import traceback
 import unittest
 
@@ -32,7 +33,7 @@ def texts(job, level="ERROR"):
 
 def obj_frames(job):
     """The frames of all bodies as OBJ files, by body: frames x vertices x 3, in Sprung's axes."""
-    out = job.path("obj")
+    out = tempfile.mkdtemp(dir=job.folder)
     subprocess.run([PROGRAM, "export", job.path("run"), "--format", "obj", "--out", out], check=True, stderr=subprocess.DEVNULL)
     frames = {}
     for folder in glob.glob(os.path.join(out, "*/")):

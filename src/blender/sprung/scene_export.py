@@ -330,6 +330,7 @@ class SceneExport:
         self.scene, self.view_layer, self.folder = scene, view_layer, folder
         self.axes = Axes.of_scene(scene)
         self.rate = scene.render.fps / scene.render.fps_base
+        view_layer.update()  # else it lacks objects that a script has just added
         things = [thing for thing in view_layer.objects if thing.type == "MESH" and thing.sprung.role != "NONE"]
         things.sort(key=lambda thing: thing.name)
         self.names = sprung_names(things)
