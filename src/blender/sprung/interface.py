@@ -1,6 +1,7 @@
 """Panels and operators. The work is in Job; the operator Simulate polls it by a timer."""
 import atexit
 import textwrap
+import time
 
 import bpy
 from bpy.app.handlers import persistent
@@ -9,6 +10,7 @@ from .job import Job
 from .settings import BODIES
 
 TICK = 0.1  # between two polls [s]
+EXPORT_TIME = 0.3  # between two drawings during the export [s]
 WIDTH = 48  # of messages in the panel [letters]
 
 jobs = {}  # by the name of the scene
@@ -70,7 +72,7 @@ class RunsJob:
     def modal(self, context, event):
         exports = self.job.state == "exporting"
         if event.type == "TIMER":
-            self.job.poll()
+            self.work()
             scene = bpy.data.scenes.get(self.job.scene_name)
             if scene:
                 show_progress(self.job, scene)
@@ -81,6 +83,13 @@ class RunsJob:
             self.job.cancel()
         # A click on Cancel must pass; other changes during the export would end up in it.
         return {"RUNNING_MODAL"} if exports and event.type not in {"LEFTMOUSE", "MOUSEMOVE", "TIMER"} else {"PASS_THROUGH"}
+
+    def work(self):
+        """Exports frames until it is time to draw the progress, or looks at the program once."""
+        begin = time.monotonic()
+        self.job.poll()
+        while self.job.state == "exporting" and time.monotonic() - begin < EXPORT_TIME:
+            self.job.poll()
 
     def execute(self, context):
         """Without a window to show the progress in: waits for the end."""

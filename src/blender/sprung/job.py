@@ -48,7 +48,7 @@ class Job:
         self.process = None
         self.stale = None  # the stamp of the run.json of an earlier run
         self.cancels = False
-        self.began = None  # the time and the number of frames when the program was first seen at work
+        self.began = self.latest = None  # the time and the number of frames when the first and the last new frame was seen
         self.export = None if resume else SceneExport(scene, view_layer, self.folder)
         self.steps = None if resume else self.export.steps()
 
@@ -79,9 +79,10 @@ class Job:
         return f"Done: {self.frames_done} frames"
 
     def time_left(self):
-        if not self.began or self.frames_done <= self.began[1]:
+        if self.began is self.latest:
             return ""
-        seconds = (time.monotonic() - self.began[0]) / (self.frames_done - self.began[1]) * (self.frames - self.frames_done)
+        per_frame = (self.latest[0] - self.began[0]) / (self.latest[1] - self.began[1])
+        seconds = max(0.0, per_frame * (self.frames - self.latest[1]) - (time.monotonic() - self.latest[0]))
         return f", {seconds:.0f} s left" if seconds < 100 else f", {seconds / 60:.0f} min left"
 
     def path(self, *names):
@@ -176,8 +177,9 @@ class Job:
     def poll_program(self):
         code = self.process.poll()
         self.frames_done = self.written()
-        if self.began is None and self.frames_done > 0:
-            self.began = time.monotonic(), self.frames_done
+        if self.frames_done > (self.latest[1] if self.latest else 0):
+            self.latest = time.monotonic(), self.frames_done
+            self.began = self.began or self.latest
         if code is not None:
             self.finish(code)
 
