@@ -4,6 +4,7 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import addon  # noqa: E402
+import addon_utils  # noqa: E402
 import bpy  # noqa: E402
 import mathutils  # noqa: E402
 from windows import area_of, call, go_on, show, window  # noqa: E402
@@ -37,6 +38,19 @@ def look_from(direction, distance, target):
     view.view_rotation = mathutils.Vector(direction).to_track_quat("Z", "Y")
 
 
+def widen_properties():
+    """Without the outliner, and wide enough for all labels."""
+    for kind in ("OUTLINER", "PROPERTIES"):
+        with bpy.context.temp_override(window=window(), area=area_of(kind)):
+            bpy.ops.screen.area_close()
+        yield
+    with bpy.context.temp_override(window=window(), area=area_of("VIEW_3D")):
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.62)
+    yield
+    max((area for area in window().screen.areas if area.type == "VIEW_3D"), key=lambda area: area.x).type = "PROPERTIES"
+    yield
+
+
 def smooth(thing):
     thing.data.polygons.foreach_set("use_smooth", [True] * len(thing.data.polygons))
 
@@ -58,21 +72,23 @@ def drive():
     cloth.color, sphere.color = (0.8, 0.25, 0.15, 1.0), (0.6, 0.65, 0.7, 1.0)
     view.spaces[0].show_gizmo = False
     look_from((0.5, -1.0, 0.45), 2.6, (0.0, 0.0, 0.1))
-    with bpy.context.temp_override(window=window(), area=area_of("OUTLINER")):
-        bpy.ops.screen.area_close()
-    yield
+    yield from widen_properties()
 
     view.type = "PREFERENCES"
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "sprung"
     bpy.context.window_manager.addon_support = {"OFFICIAL", "COMMUNITY", "TESTING"}
     bpy.ops.preferences.addon_expand(module="sprung")
-    bpy.context.preferences.addons["sprung"].preferences.program = "/usr/local/bin/sprung"
+    # Paths as people have them, instead of those of this machine.
+    addon_utils.addons_fake_modules["sprung"].__file__ = "~/.config/blender/3.4/scripts/addons/sprung/__init__.py"
+    settings, found = sys.modules["sprung.settings"], sys.modules["sprung.settings"].find_program
+    settings.find_program = lambda: "/usr/local/bin/sprung"
     yield from take("1_install.png")
-    bpy.context.preferences.addons["sprung"].preferences.program = ""
+    settings.find_program = found
     view.type = "VIEW_3D"
 
     choose(cloth)
+    yield
     show("OBJECT")
     yield from take("2_body.png")
     scroll_to_end()
