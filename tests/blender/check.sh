@@ -30,7 +30,7 @@ case $part in
   interface) in_window --window-geometry 0 0 1280 960 --python-exit-code 1 -P "$here/interface.py" ;;
   pictures)
     in_window --window-geometry 0 0 1040 720 --python-exit-code 1 -P "$here/pictures.py" -- "$1"
-    mogrify -colors 128 -define png:exclude-chunks=date,time "$1"/*.png
+    mogrify +dither -colors 96 -define png:exclude-chunks=date,time "$1"/*.png
     ;;
   *) echo "unknown: $part" >&2; exit 2 ;;
 esac
