@@ -8,6 +8,7 @@ import re
 import sys
 import traceback
 
+import bmesh
 import bpy
 import mathutils
 import numpy
@@ -22,7 +23,7 @@ FABRICS = {
     "cotton": dict(color=(0.74, 0.20, 0.13), roughness=0.85, sheen=0.4, weave="plain", thread=0.006, depth=0.35),
     "silk": dict(color=(0.02, 0.24, 0.27), roughness=0.28, sheen=0.2, specular=0.7, weave="plain", thread=0.002, depth=0.02),
     "wool": dict(color=(0.55, 0.33, 0.12), roughness=1.0, sheen=1.0, weave="twill", thread=0.014, depth=0.5),
-    "denim": dict(color=(0.045, 0.085, 0.22), second=(0.30, 0.36, 0.48), roughness=0.9, sheen=0.2, weave="twill", thread=0.008, depth=0.4),
+    "denim": dict(color=(0.045, 0.085, 0.22), second=(0.13, 0.19, 0.33), roughness=0.9, sheen=0.2, weave="twill", thread=0.008, depth=0.4),
     "jersey": dict(color=(0.34, 0.36, 0.40), roughness=0.95, sheen=0.6, weave="plain", thread=0.008, depth=0.3),
     "leather": dict(color=(0.16, 0.06, 0.025), roughness=0.45, weave="grain", thread=0.012, depth=0.3),
     "felt": dict(color=(0.06, 0.24, 0.10), roughness=1.0, sheen=1.0, weave="noise", thread=0.004, depth=0.3),
@@ -205,7 +206,6 @@ def tubes(name, shape, radius, material, collection):
 
 
 def add_ball(mesh, radius):
-    import bmesh
     made = bmesh.new()
     bmesh.ops.create_uvsphere(made, u_segments=32, v_segments=16, radius=radius)
     made.to_mesh(mesh)
@@ -347,9 +347,9 @@ def add_lights(center, extent, azimuth):
         angle = math.radians(azimuth + degrees)
         return math.sin(angle), -math.cos(angle), up
     unit = extent * extent  # so that a scene of any size is lit alike
-    add_light(center, around(-60, 1.1), 2.2 * extent, 1.3 * extent, 85.0 * unit)
-    add_light(center, around(75, 0.5), 2.6 * extent, 2.0 * extent, 18.0 * unit)
-    add_light(center, around(160, 0.9), 2.4 * extent, 1.0 * extent, 45.0 * unit)
+    add_light(center, around(-60, 1.1), 2.2 * extent, 1.3 * extent, 36.0 * unit)
+    add_light(center, around(75, 0.5), 2.6 * extent, 2.0 * extent, 6.0 * unit)
+    add_light(center, around(160, 0.9), 2.4 * extent, 1.0 * extent, 22.0 * unit)
     world = bpy.data.worlds.new("sky")
     world.use_nodes = True
     tree = world.node_tree
@@ -358,7 +358,7 @@ def add_lights(center, extent, azimuth):
     # The camera sees the horizon as bright as the far floor; surfaces get less light from it.
     ray = tree.nodes.new("ShaderNodeLightPath")
     strength = tree.nodes.new("ShaderNodeMapRange")
-    strength.inputs["To Min"].default_value, strength.inputs["To Max"].default_value = 0.35, 1.0
+    strength.inputs["To Min"].default_value, strength.inputs["To Max"].default_value = 0.22, 1.0
     tree.links.new(ray.outputs["Is Camera Ray"], strength.inputs["Value"])
     tree.links.new(strength.outputs[0], sky.inputs["Strength"])
     bpy.context.scene.world = world
@@ -390,7 +390,6 @@ def add_camera(options, points, aspect):
             place[axis] = 0.5 * (high + low)
             distance = max(distance, (high - low) / (2.0 * slope))
         position = place[0] * right + place[1] * up + distance * back
-        # Off the middle line the nearer of both bounds may need the camera elsewhere: the larger distance serves both.
     thing.location, thing.rotation_euler = position, rotation.to_euler()
     data.clip_end = 1e4
 
@@ -410,7 +409,7 @@ def set_up_cycles(options):
     scene.render.use_stamp = scene.render.use_persistent_data = False
     scene.view_settings.view_transform = "Filmic"
     scene.view_settings.look = "Medium High Contrast"
-    scene.view_settings.exposure = 0.35
+    scene.view_settings.exposure = 0.25
     if options.threads:
         scene.render.threads_mode, scene.render.threads = "FIXED", options.threads
     return width / height
@@ -465,6 +464,7 @@ class Stage:
         if not FABRICS.get(preset, {}).get("flat") and len(shape.vertices) < 60000:
             finer = thing.modifiers.new("finer", "SUBSURF")
             finer.levels = finer.render_levels = 1
+            finer.boundary_smooth = "PRESERVE_CORNERS"
         thick = thing.modifiers.new("thick", "SOLIDIFY")
         thick.thickness, thick.offset = max(0.001, min(0.003, described.get("thickness", 0.002))), 0.0
 

@@ -32,7 +32,7 @@ render() { # FOLDER FRAME...
   local pictures=$1
   shift
   mkdir -p "$pictures"
-  blender -b --factory-startup -P "$here/render.py" -- "$folder" --pictures "$pictures" "${options[@]}" "$@" > /dev/null
+  blender -b --factory-startup -P "$here/render.py" -- "$folder" "$@" --pictures "$pictures" "${options[@]}" > /dev/null
 }
 
 # Frames of the run, in order.
