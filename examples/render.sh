@@ -13,7 +13,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 usage() { sed -n '2,/^set/{/^# /s/^# //p}' "${BASH_SOURCE[0]}"; }
 
-options=() frames=() out= folder= rate=
+options=() frames=() out="" folder=""
 while (($#)); do
   case $1 in
     -h | --help) usage; exit 0 ;;
@@ -38,10 +38,10 @@ render() { # FOLDER FRAME...
 # Frames of the run, in order.
 all_frames() { seq 1 "$(sed -n 's/^ *"frames_written": \([0-9]*\),*/\1/p' "$folder/run.json")"; }
 
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 case $out in
   *.png)
-    work=$(mktemp -d)
-    trap 'rm -rf "$work"' EXIT
     render "$work" "${frames[@]}"
     pictures=()
     for frame in "${frames[@]}"; do pictures+=("$(printf '%s/%04d.png' "$work" "$frame")"); done
@@ -54,10 +54,12 @@ case $out in
     if ((${#missing[@]})); then render "$folder/render" "${missing[@]}"; fi
     rate=$(sed -n 's/^ *"frame_rate": \([0-9.]*\),*/\1/p' "$folder/run.json" | head -n 1)
     codec=(-c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart)
-    if [[ $out == *.webp ]]; then codec=(-c:v libwebp_anim -quality "${QUALITY:-60}" -loop 0); fi
-    for frame in "${frames[@]}"; do printf "file '%s'\nduration %s\n" "$(realpath "$(printf '%s/render/%04d.png' "$folder" "$frame")")" \
-      "$(awk -v rate="$rate" 'BEGIN { print 1 / rate }')"; done |
-      ffmpeg -y -loglevel error -protocol_whitelist file,pipe -f concat -safe 0 -i - -vf "fps=${RATE:-$rate}" "${codec[@]}" "$out"
+    if [[ $out == *.webp ]]; then codec=(-c:v libwebp_anim -quality 60 -loop 0); fi
+    number=0
+    for frame in "${frames[@]}"; do
+      ln -s "$(realpath "$(printf '%s/render/%04d.png' "$folder" "$frame")")" "$work/$((number++)).png"
+    done
+    ffmpeg -y -loglevel error -framerate "$rate" -i "$work/%d.png" "${codec[@]}" "$out"
     ;;
   *) render "${out:-$folder/render}" "${frames[@]}" ;;
 esac
