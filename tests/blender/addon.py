@@ -26,7 +26,7 @@ def empty_scene(folder, frames, rate=24):
     scene.sprung.folder = os.path.join(OUT, folder)
     scene.sprung.wind = 0.0, 0.0, 0.0
     scene.sprung.gust_speed = 0.0
-    scene.sprung.quality = "NORMAL"
+    scene.sprung.quality, scene.sprung.push_out = "NORMAL", True
     scene.frame_set(1)
     return scene
 

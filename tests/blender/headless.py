@@ -173,7 +173,7 @@ class Simulations(Case):
             scene.frame_set(1 + number)
             x, y, z = 100.0 * frames[number].T
             self.assert_near(addon.evaluated(cloth), numpy.stack([x, -z, y], 1), 4e-4, f"frame {number + 1}")
-        self.assert_near(self.scene_file(job)["gravity"], [0, -9.81, 0], 1e-6)
+        self.assertEqual(self.scene_file(job)["gravity"], [0, -9.81, 0])
 
     def test_a_skirt_follows_a_mannequin_that_an_armature_bends(self):
         addon.empty_scene("skirt", 16)
@@ -416,6 +416,39 @@ class Interruptions(Case):
         self.assertLess(addon.evaluated(cloth)[:, 2].max(), high)
 
 
+class Operators(Case):
+    """As scripts call them, without a window."""
+
+    def test_simulate_and_resume_report_and_show_messages(self):
+        scene = addon.empty_scene("operators", 4)
+        cloth, _ = addon.drape(6)
+        cloth.sprung.pins.add().group = "Missing"
+        with self.assertRaisesRegex(RuntimeError, "no vertex of the group"):
+            bpy.ops.sprung.simulate()
+        self.assertEqual([message.level for message in cloth.sprung.messages], ["ERROR"])
+        cloth.sprung.pins.clear()
+        self.assertEqual(bpy.ops.sprung.simulate(), {"FINISHED"})
+        self.assertFalse(cloth.sprung.messages)
+        self.assertEqual(scene.sprung.status, "Done: 4 frames")
+        scene.frame_end = 6
+        self.assertEqual(bpy.ops.sprung.resume(), {"FINISHED"})
+        self.assertEqual(scene.sprung.status, "Done: 6 frames")
+
+    def test_the_type_of_an_object_makes_and_removes_the_modifier(self):
+        addon.empty_scene("roles", 4)
+        thing = addon.add_object("Sheet", *addon.grid(3, 3, 1.0))
+        self.assertEqual(len(thing.modifiers), 0)
+        for role, count in (("CLOTH", 1), ("LATTICE", 1), ("OBSTACLE", 0), ("ROPE", 1), ("NONE", 0)):
+            thing.sprung.role = role
+            self.assertEqual(len(thing.modifiers), count, role)
+
+    def test_the_add_on_can_be_switched_off_and_on(self):
+        bpy.ops.preferences.addon_disable(module="sprung")
+        self.assertFalse(hasattr(bpy.types.Object, "sprung"))
+        bpy.ops.preferences.addon_enable(module="sprung")
+        self.assertTrue(hasattr(bpy.types.Object, "sprung"))
+
+
 class Mistakes(Case):
     def errors(self, job):
         self.assert_done(job, "failed")
@@ -439,6 +472,22 @@ class Mistakes(Case):
     def test_a_scene_without_a_body_is_an_error(self):
         addon.empty_scene("nothing", 5)
         self.assertIn("no object is a cloth", self.errors(simulate())[0][0])
+
+    def test_a_hidden_obstacle_is_an_error_at_the_obstacle(self):
+        addon.empty_scene("hidden", 5)
+        _, sphere = addon.drape(6)
+        bpy.context.view_layer.update()
+        sphere.hide_set(True)
+        text, objects = self.errors(simulate())[0]
+        self.assertIn("hidden", text)
+        self.assertEqual(objects, ["Sphere"])
+
+    def test_an_obstacle_with_a_changing_number_of_vertices_is_an_error(self):
+        addon.empty_scene("changing", 5)
+        _, sphere = addon.drape(6)
+        finer = sphere.modifiers.new("Finer", "BUILD")
+        finer.frame_start, finer.frame_duration = 1, 5
+        self.assertEqual(self.errors(simulate())[0][1], ["Sphere"])
 
     def test_an_open_lattice_is_an_error_at_its_object(self):
         addon.empty_scene("open", 5)

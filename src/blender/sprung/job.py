@@ -12,7 +12,7 @@ from . import messages, point_cache
 from . import axes as convert
 from .axes import Axes
 from .messages import Message
-from .scene_export import LINKS_FILE, SCENE_FILE, ExportError, SceneExport
+from .scene_export import LINKS_FILE, SCENE_FILE, ExportError, SceneExport, write_json
 from .settings import find_program, folder_of
 
 RUN_FOLDER = "run"
@@ -151,8 +151,7 @@ class Job:
         exported = round(described["duration"] * described["frame_rate"]) + 1
         if self.frames > exported and is_at_rest(described):
             described["duration"] = (self.frames - 1) / described["frame_rate"]
-            with open(self.path(SCENE_FILE), "w", encoding="ascii") as file:
-                json.dump(described, file, indent=1)
+            write_json(self.path(SCENE_FILE), described)
         elif self.frames != exported:
             if self.frames > exported:
                 self.messages.append(Message("WARNING", f"obstacles and pins move, and only {exported} frames of them were exported: "

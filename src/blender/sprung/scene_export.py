@@ -43,8 +43,20 @@ def sprung_names(things):
     return names
 
 
+def decimal(value):
+    """A setting, which Blender keeps as a float, as a person wrote it: 9.81 instead of 9.8100004."""
+    return [decimal(part) for part in value] if isinstance(value, list) else float(f"{value:.7g}")
+
+
 def spread(points):
     return float(numpy.ptp(points, axis=0).max(initial=0.0)) if len(points) else 0.0
+
+
+def write_json(path, value):
+    """Indented, with lists of numbers in a line."""
+    text = re.sub(r"\[\s+([-+0-9.e,\s]+?)\s+\]", lambda match: "[" + " ".join(match[1].split()) + "]", json.dumps(value, indent=1))
+    with open(path, "w", encoding="ascii") as file:
+        file.write(text + "\n")
 
 
 def write_obj(path, vertices, faces=(), lines=()):
@@ -178,8 +190,8 @@ class ObstacleExport:
             described["place"] = {"position": self.axes.vector(origin)}
             if motion:
                 described["motion"] = motion
-        described["friction"] = settings.friction
-        described["thickness"] = settings.obstacle_thickness * self.axes.metres
+        described["friction"] = decimal(settings.friction)
+        described["thickness"] = decimal(settings.obstacle_thickness * self.axes.metres)
         return described
 
 
@@ -251,13 +263,13 @@ class BodyExport:
         if settings.role != "LATTICE":
             described["self_contact"] = settings.self_contact
         if settings.role == "CLOTH" and settings.pressure:
-            described["pressure"] = settings.pressure
+            described["pressure"] = decimal(settings.pressure)
         if shape["type"] == "rope" and settings.diameter:
-            described["diameter"] = settings.diameter * self.axes.metres
+            described["diameter"] = decimal(settings.diameter * self.axes.metres)
         if settings.sets_thickness:
-            described["thickness"] = settings.thickness * self.axes.metres
+            described["thickness"] = decimal(settings.thickness * self.axes.metres)
         if settings.sets_friction:
-            described["friction"] = settings.friction
+            described["friction"] = decimal(settings.friction)
         pins = []
         for pin, path in zip(settings.pins, self.paths):
             pins += self.describe_pin(pin, path, rate, first_frame, names)
@@ -310,9 +322,9 @@ class BodyExport:
             kind = "obstacle" if target.sprung.role == "OBSTACLE" else "body"
             one = {"first": {"body": self.name, "indices": self.indices(attachment.group)}, "second": {kind: names[target.name]}}
             if attachment.stiffness:
-                one["stiffness"] = attachment.stiffness
+                one["stiffness"] = decimal(attachment.stiffness)
             if attachment.break_force:
-                one["break_force"] = attachment.break_force
+                one["break_force"] = decimal(attachment.break_force)
             described.append(one)
         return described
 
@@ -344,6 +356,10 @@ class SceneExport:
         """Yields the number of frames that are exported, and of all. Raises ExportError."""
         if not self.bodies:
             raise ExportError("no object is a cloth, a rope or a lattice: choose a type in the object properties, panel Sprung")
+        for part in self.bodies + self.obstacles:
+            if not part.thing.visible_get(view_layer=self.view_layer):
+                raise ExportError("the object is hidden, so Blender does not compute how it moves: show it, or set its type to None",
+                                  part.thing.name)
         self.clear_folder()
         frames = range(self.scene.frame_start, self.scene.frame_end + 1)
         shown = self.scene.frame_current, self.scene.frame_subframe
@@ -373,25 +389,23 @@ class SceneExport:
         links = {"scene": self.scene.name, "first_frame": self.scene.frame_start, "metres": self.axes.metres, "bodies": bodies,
                  "obstacles": {part.name: part.thing.name for part in self.obstacles},
                  "attachments": [body.thing.name for body in self.bodies for _ in body.thing.sprung.attachments]}
-        with open(os.path.join(self.folder, LINKS_FILE), "w", encoding="utf-8") as file:
-            json.dump(links, file, indent=1)
+        write_json(os.path.join(self.folder, LINKS_FILE), links)
 
     def write(self, frames):
-        described = self.describe(frames)
-        with open(os.path.join(self.folder, SCENE_FILE), "w", encoding="ascii") as file:
-            json.dump(described, file, indent=1)
+        write_json(os.path.join(self.folder, SCENE_FILE), self.describe(frames))
         self.write_links({body.name: body.link() for body in self.bodies})
 
     def describe(self, frames):
         settings = self.scene.sprung
-        gravity = self.axes.vector(self.scene.gravity) if self.scene.use_gravity else [0.0, 0.0, 0.0]
+        gravity = decimal(self.axes.vector(self.scene.gravity)) if self.scene.use_gravity else [0.0, 0.0, 0.0]
         described = {"version": 1, "duration": (frames - 1) / self.rate, "frame_rate": self.rate, "gravity": gravity,
                      "contact": {"start": "push_out" if settings.push_out else "refuse"}}
         air = {}
         if any(settings.wind):
-            air["wind"] = self.axes.vector(settings.wind)
+            air["wind"] = decimal(self.axes.vector(settings.wind))
         if settings.gust_speed:
-            air["gusts"] = {"speed": settings.gust_speed * self.axes.metres, "length": settings.gust_length * self.axes.metres}
+            air["gusts"] = {"speed": decimal(settings.gust_speed * self.axes.metres),
+                            "length": decimal(settings.gust_length * self.axes.metres)}
         if air:
             described["air"] = air
         if settings.quality in MAX_STRETCH:
