@@ -314,6 +314,54 @@ class Simulations(Case):
         self.assertGreater(frames[-1][0:64:8, 1].min(), 0.8, "the side is held")
         self.assertLess(frames[-1][:, 1].min(), 0.9, "the rest falls")
 
+    def test_the_program_takes_every_setting(self):
+        scene = addon.empty_scene("settings", 3)
+        ball = addon.add_object("Balloon", *addon.ball(0.2, 12, 7), role="CLOTH")
+        rope = addon.add_object("Rope", [(0.0, 0.0, 0.5 + 0.1 * k) for k in range(6)], edges=[(k, k + 1) for k in range(5)], role="ROPE")
+        cube = addon.add_object("Cube", *addon.ball(0.2, 12, 7), role="LATTICE")
+        floor = addon.add_object("Floor", *addon.grid(2, 2, 4.0), role="OBSTACLE")
+        ball.location, cube.location, floor.location = (0, 0, 0.25), (1, 0, 0.25), (0, 0, -0.5)
+        ball.sprung.cloth_material, ball.sprung.pressure = "rubber_sheet", 50.0
+        rope.sprung.rope_material, rope.sprung.diameter = "nylon", 0.02
+        cube.sprung.lattice_material, cube.sprung.cells = "foam", 5
+        for thing in (ball, rope, cube):
+            thing.sprung.sets_thickness = thing.sprung.sets_friction = True
+            thing.sprung.thickness, thing.sprung.friction = 0.003, 0.25
+        floor.sprung.friction, floor.sprung.obstacle_thickness = 0.7, 0.001
+        pin = addon.add_pin(rope, "Top", [5])
+        pin.releases, pin.release_frame = True, 2
+        addon.add_group(rope, "Bottom", [0])
+        attachment = rope.sprung.attachments.add()
+        attachment.group, attachment.target, attachment.stiffness, attachment.break_force = "Bottom", ball, 100.0, 30.0
+        scene.sprung.wind, scene.sprung.gust_speed, scene.sprung.gust_length = (1.0, 0.0, 0.0), 0.5, 2.0
+        for quality, stretch in (("DRAFT", 0.05), ("NORMAL", None), ("FINE", 0.005)):
+            scene.sprung.quality = quality
+            job = simulate()
+            self.assert_done(job)
+            described = self.scene_file(job)
+            self.assertEqual(described.get("stretch_limit", {}).get("max_stretch"), stretch)
+        rows = {"Balloon": ("rubber_sheet", {"pressure": 50}), "Rope": ("nylon", {"diameter": 0.02}), "Cube": ("foam", {})}
+        for name, (material, more) in rows.items():
+            for key, value in {"material": material, "thickness": 0.003, "friction": 0.25, **more}.items():
+                self.assertEqual(described["bodies"][name][key], value)
+        self.assertEqual(described["bodies"]["Cube"]["shape"]["cells"], 5)
+        self.assertEqual(described["bodies"]["Rope"]["pins"][0]["until"], 1 / 24)
+        self.assertEqual({key: described["obstacles"]["Floor"][key] for key in ("friction", "thickness")},
+                         {"friction": 0.7, "thickness": 0.001})
+        attached = described["attachments"][0]
+        self.assertEqual((attached["second"], attached["stiffness"], attached["break_force"]), ({"body": "Balloon"}, 100, 30))
+        self.assertEqual(described["air"], {"wind": [1, 0, 0], "gusts": {"speed": 0.5, "length": 2}})
+
+    def test_a_warning_of_the_program_is_at_its_object(self):
+        addon.empty_scene("warning", 2)
+        _, sphere = addon.drape(6)
+        sphere.scale = 1000.0, 1000.0, 1000.0
+        sphere.location.z = -301.0
+        job = simulate()
+        self.assert_done(job)
+        warnings = [message for message in job.messages if message.level == "WARNING"]
+        self.assertIn(["Sphere"], [message.objects for message in warnings], warnings)
+
     def test_modifiers_below_the_simulation_act_on_its_result(self):
         addon.empty_scene("subdivided", 4)
         cloth, _ = addon.drape(6)
