@@ -129,7 +129,7 @@ class Run:
 
     def points(self, frames):
         """What the camera has to show."""
-        found = [self.shape(files, frame).vertices[::max(1, len(files) // 50)] for frame in frames for files in self.bodies.values()]
+        found = [self.shape(files, frame).vertices for frame in frames for files in self.bodies.values()]
         found += [self.shape(files, frame).vertices for files in self.obstacles.values() for frame in (frames[0], frames[-1])]
         return numpy.concatenate(found)
 
@@ -386,7 +386,8 @@ def add_camera(options, points, aspect):
         seen = numpy.stack([points @ right, points @ up, -points @ back], 1)  # the last: how far away
         place, distance = numpy.zeros(3), 0.0
         for axis, slope in ((0, across), (1, across / aspect)):
-            high, low = (seen[:, axis] - slope * seen[:, 2]).max(), (seen[:, axis] + slope * seen[:, 2]).min()
+            high = (seen[:, axis] - slope * seen[:, 2]).max() + 2.5 * options.radius  # that of the beads of ropes
+            low = (seen[:, axis] + slope * seen[:, 2]).min() - 2.5 * options.radius
             place[axis] = 0.5 * (high + low)
             distance = max(distance, (high - low) / (2.0 * slope))
         position = place[0] * right + place[1] * up + distance * back
