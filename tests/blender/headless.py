@@ -561,6 +561,30 @@ class Mistakes(Case):
             os.environ["SPRUNG_PROGRAM"] = PROGRAM
 
 
+class Pictures(Case):
+    """examples/render.py, which renders runs."""
+
+    def render(self, example, frame, *options):
+        """Red, green and blue of each pixel of a small picture."""
+        examples = os.path.join(os.environ["SPRUNG_SOURCE_DIR"], "examples")
+        out = os.path.join(addon.OUT, example)
+        subprocess.run([PROGRAM, "run", os.path.join(examples, f"{example}.json"), "--out", out, "--frames", str(frame), "--quiet"],
+                       check=True, stderr=subprocess.DEVNULL)
+        subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "-P", os.path.join(examples, "render.py"), "--", out, str(frame),
+                        "--pictures", out, "--size", "64x48", "--samples", "2", *options], check=True, stdout=subprocess.DEVNULL)
+        picture = bpy.data.images.load(os.path.join(out, f"{frame:04}.png"))
+        self.assertEqual(tuple(picture.size), (64, 48))
+        return numpy.array(picture.pixels[:]).reshape(-1, 4).T[:3]
+
+    def test_a_rope_and_its_masses_are_seen(self):
+        red, _, blue = self.render("two_masses", 2, "--azimuth", "0", "--radius", "0.05")
+        self.assertGreater((red > 1.4 * blue).mean(), 0.02)
+
+    def test_a_flag_of_silk_is_seen(self):
+        red, _, blue = self.render("flag_in_gusts", 2)
+        self.assertGreater((blue > 1.3 * red).mean(), 0.05)
+
+
 try:
     names = sys.argv[sys.argv.index("--") + 1:]
     loader = unittest.TestLoader()
