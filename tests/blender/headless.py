@@ -298,6 +298,31 @@ class Simulations(Case):
                 x, y, z = numpy.array([line.split()[1:4] for line in file if line.startswith("v ")], float).T
             self.assert_near(addon.evaluated(sphere), numpy.stack([x, -z, y], 1), 1e-5, f"frame {number + 1}")
 
+    def test_obstacles_that_grow_or_deform_late_are_sequences(self):
+        scene = addon.empty_scene("growing", 5)
+        addon.drape(5)
+        growing = bpy.data.objects["Sphere"]
+        late = addon.add_object("Late", *addon.ball(0.2, 8, 5), role="OBSTACLE")
+        growing.location.z, late.location.x = -1.0, 2.0
+        for frame, scale in ((1, 1.0), (5, 1.2)):
+            growing.scale = scale, 1.0, scale
+            growing.keyframe_insert("scale", frame=frame)
+        late.shape_key_add(name="Basis")
+        key = late.shape_key_add(name="Dent")
+        key.data[0].co.z += 0.05
+        for frame, value in ((3, 0.0), (5, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        job = simulate()
+        self.assert_done(job)
+        for thing in (growing, late):
+            self.assertEqual(self.scene_file(job)["obstacles"][thing.name]["shape"]["type"], "sequence")
+            for number in range(5):
+                scene.frame_set(1 + number)
+                with open(job.path("meshes", thing.name, f"{thing.name}.{number + 1:04}.obj")) as file:
+                    x, y, z = numpy.array([line.split()[1:] for line in file if line.startswith("v ")], float).T
+                self.assert_near(addon.evaluated(thing), numpy.stack([x, -z, y], 1), 1e-6, f"{thing.name}, frame {number + 1}")
+
     def test_an_attachment_holds_a_cloth_at_an_obstacle(self):
         addon.empty_scene("attached", 8)
         cloth = addon.add_object("Sheet", *addon.grid(8, 8, 0.5), role="CLOTH")
