@@ -66,7 +66,8 @@ export class BodyView {
     this.surface.frustumCulled = this.springs.frustumCulled = false;
   }
 
-  update(options: ViewOptions, theme: Theme): void {
+  /** `top` is the value at the end of the scale of colours. */
+  update(options: ViewOptions, theme: Theme, top: number): void {
     const { model } = this;
     this.surface.visible = options.surface && model.topology.triangles.length > 0;
     this.springs.visible = options.springs && model.scene.complete;
@@ -82,7 +83,7 @@ export class BodyView {
       vertexNormals(model.positions, model.triangles, this.normals.array as Float32Array);
       this.normals.needsUpdate = true;
     }
-    const repainted = this.particleColors.update(options.color, theme, scaleOf(model, options));
+    const repainted = this.particleColors.update(options.color, theme, top);
     if (repainted) this.colors.needsUpdate = true;
     if (this.rope) {
       this.rope.group.visible = options.surface;
@@ -156,11 +157,4 @@ function ropeRadius(model: RunModel, size: number): number {
   const bodies = (model.scene.scene.bodies ?? {}) as Record<string, { thickness?: number }>;
   const thickness = Math.max(0, ...Object.values(bodies).map((body) => body.thickness ?? 0));
   return Math.min(Math.max(thickness, 0.006 * size), 0.02 * size);
-}
-
-/** What the scale of stretch has to contain: the limit of stretch. */
-function scaleOf(model: RunModel, options: ViewOptions): number {
-  if (options.color !== 'stretch') return 0;
-  const limit = model.scene.scene.stretch_limit as { max_stretch?: number } | null | undefined;
-  return limit?.max_stretch ?? 0;
 }

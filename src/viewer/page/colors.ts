@@ -1,5 +1,5 @@
 import { Color } from 'three';
-import { IN_CONTACT } from './protocol';
+import { IN_CONTACT, STRUCTURAL } from './protocol';
 import type { RunModel } from './run_model';
 import type { Theme } from './theme';
 import type { ColorMode } from './view_options';
@@ -8,6 +8,9 @@ import type { ColorMode } from './view_options';
 const STOPS = ['#440154', '#472d7b', '#3b528b', '#2c728e', '#21918c', '#28ae80', '#5ec962', '#addc30', '#fde725'];
 const STEPS = 256;
 const SMALLEST_SCALE: Record<ColorMode, number> = { plain: 1, contact: 1, stretch: 0.001, speed: 0.01 };
+/** A few particles must not decide on the scale. */
+const PERCENTILE = 0.99;
+const BINS = 1024;
 
 export const SCALE_CSS = `linear-gradient(to right, ${STOPS.join(', ')})`;
 
@@ -27,6 +30,36 @@ function niceAbove(value: number): number {
   return 10 * power;
 }
 
+/** The scale of the colours, which all runs share. It follows the values up and down, in steps that do not flicker. */
+export class ColorScale {
+  /** The value at the end of the scale. */
+  top = 0;
+  private mode: ColorMode = 'plain';
+
+  follow(mode: ColorMode, value: number): void {
+    if (mode !== this.mode) this.top = 0;
+    this.mode = mode;
+    const largest = Math.max(value, SMALLEST_SCALE[mode]);
+    if (largest > this.top || niceAbove(1.25 * largest) < this.top) this.top = niceAbove(largest);
+  }
+}
+
+const bins = new Uint32Array(BINS);
+
+/** The value that all but a hundredth of the particles stay below. */
+function percentile(values: Float32Array): number {
+  let largest = 0;
+  for (let i = 0; i < values.length; ++i) if (values[i] > largest && values[i] < Infinity) largest = values[i];
+  if (largest === 0) return 0;
+  bins.fill(0);
+  const factor = (BINS - 1) / largest;
+  for (let i = 0; i < values.length; ++i) if (values[i] > 0 && values[i] <= largest) ++bins[Math.ceil(factor * values[i])];
+  let above = 0;
+  let bin = BINS - 1;
+  while (bin > 0 && above + bins[bin] <= (1 - PERCENTILE) * values.length) above += bins[bin--];
+  return bin / factor;
+}
+
 /** The colours of particles of a run. */
 export class ParticleColors {
   readonly colors: Float32Array;
@@ -34,8 +67,6 @@ export class ParticleColors {
   private readonly plain: Float32Array;
   private theme: Theme | null = null;
   private mode: ColorMode = 'plain';
-  /** The value at the end of the scale; it only grows, so that colours can be compared over time. */
-  private top = 0;
 
   constructor(private readonly model: RunModel) {
     const count = model.topology.particles;
@@ -44,15 +75,18 @@ export class ParticleColors {
     this.plain = new Float32Array(3 * count);
   }
 
-  get scale(): number {
-    return this.top;
+  /** Computes what is shown by colour, and returns a value that the scale has to contain. */
+  measure(mode: ColorMode): number {
+    if (mode === 'stretch') stretches(this.model, this.values);
+    else if (mode === 'speed') this.values.set(this.model.speeds);
+    else return 0;
+    return percentile(this.values);
   }
 
-  /** Returns whether colours have changed. `scale` is a value that the scale has to contain. */
-  update(mode: ColorMode, theme: Theme, scale: number): boolean {
+  /** After `measure`. Returns whether colours have changed. */
+  update(mode: ColorMode, theme: Theme, top: number): boolean {
     const stale = this.theme !== theme || this.mode !== mode;
     if (this.theme !== theme) this.setPlain(theme);
-    if (this.mode !== mode) this.top = 0;
     this.theme = theme;
     this.mode = mode;
     if (mode === 'plain') {
@@ -60,7 +94,7 @@ export class ParticleColors {
       return stale;
     }
     if (mode === 'contact') this.colorContacts(theme);
-    else this.colorValues(mode, scale);
+    else this.colorValues(top);
     return true;
   }
 
@@ -72,35 +106,29 @@ export class ParticleColors {
 
   private colorContacts(theme: Theme): void {
     this.colors.set(this.plain);
-    this.model.states.forEach((state, i) => {
-      if (state & IN_CONTACT) theme.contact.toArray(this.colors, 3 * i);
-    });
+    const { states } = this.model;
+    for (let i = 0; i < states.length; ++i) if (states[i] & IN_CONTACT) theme.contact.toArray(this.colors, 3 * i);
   }
 
-  private colorValues(mode: ColorMode, scale: number): void {
-    const values = this.values;
-    if (mode === 'stretch') stretches(this.model, values);
-    else values.set(this.model.speeds);
-    let largest = Math.max(scale, SMALLEST_SCALE[mode]);
-    for (let i = 0; i < values.length; ++i) if (values[i] > largest && values[i] < Infinity) largest = values[i];
-    if (largest > this.top) this.top = niceAbove(largest);
-    const factor = (STEPS - 1) / this.top;
+  private colorValues(top: number): void {
+    const { values, colors } = this;
+    const factor = (STEPS - 1) / top;
     for (let i = 0; i < values.length; ++i) {
       const at = 3 * Math.min(Math.max(Math.round(factor * values[i]), 0), STEPS - 1);
-      this.colors[3 * i] = table[at];
-      this.colors[3 * i + 1] = table[at + 1];
-      this.colors[3 * i + 2] = table[at + 2];
+      colors[3 * i] = table[at];
+      colors[3 * i + 1] = table[at + 1];
+      colors[3 * i + 2] = table[at + 2];
     }
   }
 }
 
-/** The largest stretch of the springs at each particle [1]. */
+/** The largest stretch of the structural springs at each particle [1], of which the plot shows the largest. */
 function stretches(model: RunModel, values: Float32Array): void {
-  const { springs, topology: { restLengths } } = model;
+  const { springs, topology: { restLengths, kinds } } = model;
   const p = model.positions;
   values.fill(0);
   for (let s = 0; s < restLengths.length; ++s) {
-    if (restLengths[s] <= 0) continue;
+    if (kinds[s] !== STRUCTURAL || restLengths[s] <= 0) continue;
     const a = springs[2 * s];
     const b = springs[2 * s + 1];
     const x = p[3 * b] - p[3 * a];

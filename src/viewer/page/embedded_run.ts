@@ -35,7 +35,9 @@ function levelsOf(bytes: Uint8Array, frames: number): Uint16Array[] {
   for (let frame = 0; frame < frames; ++frame) {
     const low = bytes.subarray(2 * values * frame, 2 * values * (frame + 1));
     const before = levels.at(-1) ?? new Uint16Array(values);
-    levels.push(before.map((level, k) => level + low[k] + 256 * low[values + k]));
+    const next = new Uint16Array(values);
+    for (let k = 0; k < values; ++k) next[k] = before[k] + low[k] + 256 * low[values + k];
+    levels.push(next);
   }
   return levels;
 }
@@ -46,7 +48,9 @@ function statesOf(bytes: Uint8Array, frames: number): Uint8Array[] {
   const states: Uint8Array[] = [];
   for (let frame = 0; frame < frames; ++frame) {
     const before = states.at(-1) ?? new Uint8Array(count);
-    states.push(before.map((state, k) => state + bytes[count * frame + k]));
+    const next = new Uint8Array(count);
+    for (let k = 0; k < count; ++k) next[k] = before[k] + bytes[count * frame + k];
+    states.push(next);
   }
   return states;
 }
@@ -66,13 +70,17 @@ export async function embeddedRun(): Promise<EmbeddedRun | null> {
 /** A run that `sprung export --format html` wrote into the page. Answers `seek` as the server does. */
 export class EmbeddedRun implements Source {
   private listener: SourceListener | null = null;
+  /** A file leaves out the speeds. */
+  private readonly speeds: Float32Array;
 
   constructor(
     private readonly data: Embedded,
     private readonly topology: Topology,
     private readonly levels: Uint16Array[],
     private readonly states: Uint8Array[],
-  ) {}
+  ) {
+    this.speeds = new Float32Array(topology.particles);
+  }
 
   /** What rounding has changed. */
   get note(): string {
@@ -100,7 +108,7 @@ export class EmbeddedRun implements Source {
     const decoded: Frame = {
       numbers: this.numbers(number),
       positions: positions.subarray(0, 3 * count),
-      speeds: new Float32Array(count),
+      speeds: this.speeds,
       states: this.states[number - 1],
       poses: this.data.poses[number - 1].map((pose) => Float32Array.from(pose)),
       deformed: this.deformed(positions.subarray(3 * count)),
@@ -115,7 +123,13 @@ export class EmbeddedRun implements Source {
 
   private positions(frame: number): Float32Array {
     const { min, size } = this.data.bounds;
-    return Float32Array.from(this.levels[frame - 1], (level, k) => min[k % 3] + (size[k % 3] * level) / LEVELS);
+    const levels = this.levels[frame - 1];
+    const positions = new Float32Array(levels.length);
+    // Float32Array.from with a function takes 15 times as long.
+    for (let d = 0; d < 3; ++d) {
+      for (let k = d; k < levels.length; k += 3) positions[k] = min[d] + (size[d] * levels[k]) / LEVELS;
+    }
+    return positions;
   }
 
   /** The vertices of each obstacle that deforms. */

@@ -31,7 +31,7 @@ export class Page implements SourceListener {
   private readonly toolbar: Toolbar;
   private readonly settings: Settings;
   private readonly notices = new Notices(this.send);
-  private readonly plots = new Plots(byId('plots'));
+  private readonly plots: Plots;
   private readonly panel: ViewPanel;
   private readonly drag: Drag;
   private readonly player: ReplayPlayer;
@@ -51,6 +51,7 @@ export class Page implements SourceListener {
       const own = key === 'integrator' && this.shown.models.length > 1 ? { run: 0 } : {};
       this.send({ do: 'set', ...own, key, value });
     });
+    this.plots = new Plots(byId('plots'), () => (this.plotted.stale = true), (time) => this.seekTime(time));
     this.panel = new ViewPanel(view);
     this.drag = new Drag(view, this.send);
     this.player = new ReplayPlayer(this.send, (header, frame) => this.showFrame(header, frame));
@@ -76,6 +77,7 @@ export class Page implements SourceListener {
     const themes = new ThemeChoice((theme) => {
       this.theme = theme;
       view.setTheme(theme);
+      this.plots.forgetColors();
       this.plotted.stale = true;
     });
     themes.apply();
@@ -269,6 +271,12 @@ export class Page implements SourceListener {
     this.player.play(playing);
     this.shown.playing = playing;
     this.toolbar.setPlaying(playing);
+  }
+
+  private seekTime(time: number): void {
+    if (!this.recorded) return;
+    this.play(false);
+    this.player.seekTime(time);
   }
 
   private singleFrame(): void {

@@ -1,8 +1,9 @@
 import { element, short } from './dom';
 import type { History, Quantity } from './history';
 
-interface Series { quantity: Quantity; label: string; color: string }
-interface PlotSpec { id: string; title: string; unit: string; series: Series[] }
+/** `optional` curves are drawn on request: more than three cannot be told apart. */
+interface Series { quantity: Quantity; label: string; color: string; optional?: boolean }
+interface PlotSpec { id: string; title: string; unit: string; series: Series[]; whole?: boolean }
 
 /** Two runs: the first is drawn solid, the second dashed. */
 const SECOND_COLOR = '#d55e00';
@@ -12,114 +13,202 @@ const SPECS: PlotSpec[] = [
     title: 'Energy',
     unit: 'J',
     series: [
-      { quantity: 'kinetic', label: 'kinetic', color: '#0072b2' },
+      { quantity: 'kinetic', label: 'kinetic', color: '#2f7fd0' },
       { quantity: 'elastic', label: 'elastic', color: '#e69f00' },
-      { quantity: 'gravity', label: 'gravity', color: '#009e73' },
-      { quantity: 'contact', label: 'contact', color: '#cc79a7' },
       { quantity: 'total', label: 'total', color: '' },
+      { quantity: 'gravity', label: 'gravity', color: '#009e73', optional: true },
+      { quantity: 'contact', label: 'contact', color: '#cc79a7', optional: true },
     ],
   },
-  { id: 'stretch', title: 'Largest stretch', unit: '', series: [{ quantity: 'stretch', label: '', color: '#0072b2' }] },
-  { id: 'contacts', title: 'Contacts', unit: '', series: [{ quantity: 'contacts', label: '', color: '#0072b2' }] },
-  { id: 'frame-ms', title: 'Time of a frame', unit: 'ms', series: [{ quantity: 'ms', label: '', color: '#0072b2' }] },
+  { id: 'stretch', title: 'Largest stretch, structural', unit: '', series: [{ quantity: 'stretch', label: '', color: '#2f7fd0' }] },
+  { id: 'contacts', title: 'Contacts', unit: '', series: [{ quantity: 'contacts', label: '', color: '#2f7fd0' }], whole: true },
+  { id: 'frame-ms', title: 'Time of a frame', unit: 'ms', series: [{ quantity: 'ms', label: '', color: '#2f7fd0' }] },
 ];
+
+const LEFT = 40;
+const RIGHT = 6;
+const TOP = 7;
+const BOTTOM = 16;
+const NEAR_END_PX = 26;
 
 export interface PlottedRun { history: History; time: number }
 
 /** The plots that run along. */
 export class Plots {
   private readonly plots: Plot[];
+  private inks: Inks | null = null;
 
-  constructor(parent: HTMLElement) {
-    this.plots = SPECS.map((spec) => new Plot(spec, parent));
+  /** `changed` asks for `draw`; `seek` gets the time that was clicked at. */
+  constructor(parent: HTMLElement, changed: () => void, seek: (time: number) => void) {
+    this.plots = SPECS.map((spec) => new Plot(spec, parent, changed, seek));
+  }
+
+  /** The theme has changed. */
+  forgetColors(): void {
+    this.inks = null;
   }
 
   /** Marks the time of each run if `marked`. */
   draw(runs: PlottedRun[], marked: boolean): void {
-    const style = getComputedStyle(document.documentElement);
-    const ink = style.getPropertyValue('--ink');
-    const muted = style.getPropertyValue('--muted');
-    const line = style.getPropertyValue('--line');
-    for (const plot of this.plots) plot.draw(runs, marked, { ink, muted, line });
+    this.inks ??= inksOfPage();
+    for (const plot of this.plots) plot.draw(runs, marked, this.inks);
   }
 }
 
 interface Inks { ink: string; muted: string; line: string }
 
+function inksOfPage(): Inks {
+  const style = getComputedStyle(document.documentElement);
+  const [ink, muted, line] = ['--ink', '--muted', '--line'].map((name) => style.getPropertyValue(name));
+  return { ink, muted, line };
+}
+
+interface Curve extends Series { value: HTMLElement; key: HTMLElement; shown: boolean }
+
 class Plot {
   private readonly canvas: HTMLCanvasElement;
-  private readonly values: HTMLElement[] = [];
-  private readonly keys: HTMLElement[] = [];
+  private readonly curves: Curve[];
+  /** Of the canvas [pixels]; told by the browser, as to ask for it would make the page compute its layout. */
+  private width = 0;
+  private readonly height: number;
+  private end = 1e-9;
+  /** The pointer in the plot [pixels], or null. */
+  private pointer: number | null = null;
 
   constructor(
     private readonly spec: PlotSpec,
     parent: HTMLElement,
+    changed: () => void,
+    seek: (time: number) => void,
   ) {
-    this.canvas = element('canvas', { height: spec.series.length > 1 ? 96 : 52 });
-    const head = element('div', { className: 'plot-head' }, element('span', { textContent: spec.unit ? `${spec.title} [${spec.unit}]` : spec.title }));
-    for (const { label } of spec.series) {
-      const value = element('output');
-      const key = element('i');
-      this.values.push(value);
-      this.keys.push(key);
-      head.append(element('span', { className: 'plot-key' }, ...(label ? [key, `${label} `] : []), value));
-    }
-    const plot = element('div', { className: 'plot' }, head, this.canvas);
+    this.height = spec.series.length > 1 ? 116 : 74;
+    const canvas = element('canvas');
+    this.canvas = canvas;
+    const head = element('div', { className: 'plot-head' });
+    head.append(element('span', { textContent: spec.unit ? `${spec.title} [${spec.unit}]` : spec.title }));
+    this.curves = spec.series.map((series) => {
+      const curve = { ...series, value: element('output'), key: element('i'), shown: !series.optional };
+      if (!series.label) {
+        head.append(curve.value);
+        return curve;
+      }
+      const button = element('button', { type: 'button', className: 'plot-key', title: `Show or hide ${series.label}` });
+      button.append(curve.key, `${series.label} `, curve.value);
+      button.dataset.testid = `${spec.id}-${series.quantity}`;
+      const press = () => button.setAttribute('aria-pressed', String(curve.shown));
+      button.addEventListener('click', () => {
+        curve.shown = !curve.shown;
+        press();
+        changed();
+      });
+      press();
+      head.append(button);
+      return curve;
+    });
+    const plot = element('div', { className: 'plot' }, head, canvas);
     plot.dataset.testid = spec.id;
-    plot.setAttribute('role', 'img');
+    plot.setAttribute('role', 'group');
     plot.setAttribute('aria-label', `Plot: ${spec.title}`);
-    this.canvas.style.height = `${this.canvas.height}px`;
+    canvas.style.height = `${this.height}px`;
     parent.append(plot);
+    new ResizeObserver(([entry]) => {
+      this.resize(entry.contentRect.width);
+      changed();
+    }).observe(canvas);
+    canvas.addEventListener('pointermove', (event) => {
+      this.pointer = event.offsetX;
+      changed();
+    });
+    canvas.addEventListener('pointerleave', () => {
+      this.pointer = null;
+      changed();
+    });
+    canvas.addEventListener('click', (event) => seek(this.timeAt(event.offsetX)));
   }
 
   draw(runs: PlottedRun[], marked: boolean, inks: Inks): void {
-    const { canvas, spec } = this;
-    const width = canvas.clientWidth;
-    const height = canvas.clientHeight;
-    const context = canvas.getContext('2d');
-    if (!context || width === 0) return;
+    const { width, height, curves } = this;
+    const context = this.canvas.getContext('2d');
+    if (!context || width <= LEFT + RIGHT) return;
     const ratio = window.devicePixelRatio;
-    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-      canvas.width = Math.round(width * ratio);
-      canvas.height = Math.round(height * ratio);
-    }
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
-    const [low, high] = range(spec, runs);
-    const end = Math.max(1e-9, ...runs.map(({ history }) => history.times[history.times.length - 1] ?? 0));
-    const x = (time: number) => 1 + (time / end) * (width - 2);
-    const y = (value: number) => height - 3 - ((value - low) / (high - low)) * (height - 6);
-    context.strokeStyle = inks.line;
-    context.lineWidth = 1;
-    for (const value of low < 0 && high > 0 ? [low, 0, high] : [low, high]) {
-      line(context, 0, y(value), width, y(value));
-    }
-    spec.series.forEach((series, k) => {
-      this.keys[k].style.background = series.color || inks.ink;
+    this.end = Math.max(1e-9, ...runs.map(({ history }) => history.times[history.times.length - 1] ?? 0));
+    const ticks = ticksOf(range(curves, runs), this.spec.whole ? 1 : 0);
+    const [low, high] = [ticks[0], ticks[ticks.length - 1]];
+    const x = (time: number) => LEFT + (time / this.end) * (width - LEFT - RIGHT);
+    const y = (value: number) => height - BOTTOM - ((value - low) / (high - low)) * (height - TOP - BOTTOM);
+    this.drawAxes(context, ticks, x, y, inks);
+    const at = this.pointer === null ? null : this.timeAt(this.pointer);
+    for (const curve of curves) {
+      const color = curve.color || inks.ink;
+      curve.key.style.background = color;
       runs.forEach((run, number) => {
-        const alone = spec.series.length === 1;
-        context.strokeStyle = number > 0 && alone ? SECOND_COLOR : series.color || inks.ink;
-        context.lineWidth = 1.4;
+        if (!curve.shown) return;
+        context.strokeStyle = number > 0 && curves.length === 1 ? SECOND_COLOR : color;
+        context.lineWidth = 1.5;
         context.setLineDash(number > 0 ? [4, 3] : []);
-        curve(context, run.history.times, run.history.values[series.quantity], x, y);
+        drawCurve(context, run.history.times, run.history.values[curve.quantity], x, y);
       });
       context.setLineDash([]);
-      this.values[k].textContent = runs.map((run) => short(valueAt(run, series.quantity, marked))).join(' | ');
-    });
-    if (marked && runs[0]) {
-      context.strokeStyle = inks.muted;
-      line(context, x(runs[0].time), 0, x(runs[0].time), height);
+      setText(curve.value, runs.map((run) => short(valueAt(run, curve.quantity, at ?? (marked ? run.time : Infinity)))).join(' | '));
     }
-    context.fillStyle = inks.muted;
-    context.font = '10px system-ui, sans-serif';
-    context.textBaseline = 'top';
-    context.fillText(short(high, 2), 2, 4);
-    context.textBaseline = 'bottom';
-    context.fillText(short(low, 2), 2, height - 4);
-    context.textAlign = 'right';
-    if (end > 1e-9) context.fillText(`${short(end)} s`, width - 2, height - 4);
-    context.textAlign = 'left';
+    context.lineWidth = 1;
+    context.strokeStyle = inks.muted;
+    if (marked && runs[0]) line(context, x(runs[0].time), TOP, x(runs[0].time), height - BOTTOM);
+    if (at === null || this.end <= 1e-9) return;
+    context.strokeStyle = inks.ink;
+    line(context, x(at), TOP, x(at), height - BOTTOM);
+    this.label(context, `${short(at)} s`, x(at), inks.ink, true);
   }
+
+  private drawAxes(context: CanvasRenderingContext2D, ticks: number[], x: (t: number) => number, y: (v: number) => number, inks: Inks): void {
+    const { width, height } = this;
+    context.font = '10px system-ui, sans-serif';
+    context.lineWidth = 1;
+    context.strokeStyle = inks.line;
+    context.fillStyle = inks.muted;
+    context.textBaseline = 'middle';
+    context.textAlign = 'right';
+    for (const tick of ticks) {
+      line(context, LEFT, y(tick), width - RIGHT, y(tick));
+      context.fillText(short(tick), LEFT - 5, y(tick));
+    }
+    if (this.end <= 1e-9) return;
+    for (const tick of ticksOf([0, this.end], 0, 4)) {
+      if (tick > this.end || x(tick) > width - NEAR_END_PX) continue;
+      line(context, x(tick), height - BOTTOM, x(tick), height - BOTTOM + 3);
+      this.label(context, short(tick), x(tick), inks.muted, false);
+    }
+    context.textAlign = 'right';
+    context.fillText('s', width - RIGHT, height - 5);
+  }
+
+  /** A text under the axis of time; `clear` removes what is behind it. */
+  private label(context: CanvasRenderingContext2D, text: string, x: number, ink: string, clear: boolean): void {
+    const half = context.measureText(text).width / 2 + 3;
+    const at = Math.min(Math.max(x, half), this.width - half);
+    if (clear) context.clearRect(at - half, this.height - BOTTOM + 1, 2 * half, BOTTOM);
+    context.fillStyle = ink;
+    context.textBaseline = 'middle';
+    context.textAlign = 'center';
+    context.fillText(text, at, this.height - 5);
+  }
+
+  private timeAt(x: number): number {
+    return this.end * Math.min(Math.max((x - LEFT) / (this.width - LEFT - RIGHT), 0), 1);
+  }
+
+  private resize(width: number): void {
+    this.width = width;
+    this.canvas.width = Math.round(width * window.devicePixelRatio);
+    this.canvas.height = Math.round(this.height * window.devicePixelRatio);
+  }
+}
+
+/** A text that is set again makes the page compute its layout again. */
+function setText(node: HTMLElement, text: string): void {
+  if (node.textContent !== text) node.textContent = text;
 }
 
 function line(context: CanvasRenderingContext2D, x0: number, y0: number, x1: number, y1: number): void {
@@ -129,7 +218,7 @@ function line(context: CanvasRenderingContext2D, x0: number, y0: number, x1: num
   context.stroke();
 }
 
-function curve(
+function drawCurve(
   context: CanvasRenderingContext2D,
   times: number[],
   values: number[],
@@ -137,15 +226,16 @@ function curve(
   y: (value: number) => number,
 ): void {
   context.beginPath();
-  times.forEach((time, k) => context.lineTo(x(time), y(values[k])));
+  for (let k = 0; k < times.length; ++k) context.lineTo(x(times[k]), y(values[k]));
   context.stroke();
 }
 
-function range(spec: PlotSpec, runs: PlottedRun[]): [number, number] {
+function range(curves: Curve[], runs: PlottedRun[]): [number, number] {
   let low = 0;
   let high = 0;
   for (const { history } of runs) {
-    for (const { quantity } of spec.series) {
+    for (const { quantity, shown } of curves) {
+      if (!shown) continue;
       for (const value of history.values[quantity]) {
         if (value < low) low = value;
         if (value > high) high = value;
@@ -155,9 +245,19 @@ function range(spec: PlotSpec, runs: PlottedRun[]): [number, number] {
   return high > low ? [low, high] : [low, low + 1];
 }
 
-function valueAt(run: PlottedRun, quantity: Quantity, marked: boolean): number {
+/** Multiples of 1, 2 or 5 times a power of ten, about `count`, that enclose the range. */
+function ticksOf([low, high]: [number, number], smallest: number, count = 3): number[] {
+  const rough = (high - low) / count;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = Math.max(smallest, power * ([1, 2, 5].find((factor) => factor * power >= rough) ?? 10));
+  const ticks: number[] = [];
+  for (let k = Math.floor(low / step + 1e-9); k <= Math.ceil(high / step - 1e-9); ++k) ticks.push(k * step);
+  return ticks;
+}
+
+function valueAt(run: PlottedRun, quantity: Quantity, time: number): number {
   const { times, values } = run.history;
   let k = times.length - 1;
-  if (marked) while (k > 0 && times[k] > run.time + 1e-9) --k;
+  while (k > 0 && times[k] > time + 1e-9) --k;
   return values[quantity][k] ?? NaN;
 }

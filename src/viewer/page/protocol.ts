@@ -118,6 +118,8 @@ export const TOPOLOGY = 1;
 export const FRAME = 2;
 export const IN_CONTACT = 1;
 export const PINNED = 2;
+/** A kind of spring. */
+export const STRUCTURAL = 0;
 const HEADER_BYTES = 32;
 
 export function decodeHeader(buffer: ArrayBuffer): Header {

@@ -49,6 +49,10 @@ export class ReplayPlayer {
     this.present();
   }
 
+  seekTime(time: number): void {
+    this.seek(1 + Math.round(time * this.rate));
+  }
+
   /** To be called in each animation frame. */
   tick(now: number): void {
     if (!this.playing || this.frames < 2) return;

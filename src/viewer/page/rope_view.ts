@@ -72,13 +72,13 @@ export class RopeView {
     const yx = positions[b] - positions[a];
     const yy = positions[b + 1] - positions[a + 1];
     const yz = positions[b + 2] - positions[a + 2];
-    const length = Math.hypot(yx, yy, yz) || 1e-9;
+    const length = Math.sqrt(yx * yx + yy * yy + yz * yz) || 1e-9;
     // Across the direction: the cross product with the axis that it is farthest from.
     const awayFromX = Math.abs(yx) < 0.7 * length;
     let xx = awayFromX ? 0 : -yz;
     let xy = awayFromX ? yz : 0;
     let xz = awayFromX ? -yy : yx;
-    const across = this.radius / (Math.hypot(xx, xy, xz) || 1);
+    const across = this.radius / (Math.sqrt(xx * xx + xy * xy + xz * xz) || 1);
     xx *= across;
     xy *= across;
     xz *= across;

@@ -3,7 +3,7 @@ import { BodyView } from './body_view';
 import { ObstacleView } from './obstacle_view';
 import type { RunModel } from './run_model';
 import type { Theme } from './theme';
-import type { ViewOptions } from './view_options';
+import type { ColorMode, ViewOptions } from './view_options';
 
 /** The picture of one run. */
 export class RunView {
@@ -31,8 +31,20 @@ export class RunView {
     for (const obstacle of this.obstacles) this.scene.add(obstacle.mesh);
   }
 
-  update(options: ViewOptions, theme: Theme): void {
-    this.bodies.update(options, theme);
+  /** The limit of stretch [1], or 0. */
+  get stretchLimit(): number {
+    const limit = this.model.scene.scene.stretch_limit as { max_stretch?: number } | null | undefined;
+    return limit?.max_stretch ?? 0;
+  }
+
+  /** A value that the scale of colours has to contain. */
+  measure(color: ColorMode): number {
+    return Math.max(this.bodies.particleColors.measure(color), color === 'stretch' ? this.stretchLimit : 0);
+  }
+
+  /** After `measure`; `top` is the value at the end of the scale of colours. */
+  update(options: ViewOptions, theme: Theme, top: number): void {
+    this.bodies.update(options, theme, top);
     let pose = 0;
     let deformed = 0;
     for (const obstacle of this.obstacles) {

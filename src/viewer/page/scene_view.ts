@@ -1,5 +1,6 @@
 import { PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { ColorScale } from './colors';
 import type { RunModel } from './run_model';
 import { RunView } from './run_view';
 import { LIGHT } from './theme';
@@ -19,6 +20,7 @@ export class SceneView {
   readonly canvas: HTMLCanvasElement;
   readonly controls: OrbitControls;
   readonly runs: RunView[] = [];
+  readonly scale = new ColorScale();
   private readonly renderer: WebGLRenderer;
   private theme: Theme = LIGHT;
   private radius = 1;
@@ -114,7 +116,7 @@ export class SceneView {
   /** Draws if something has changed. Returns whether it has. */
   draw(): boolean {
     if (!this.stale && !this.moved) return false;
-    if (this.stale) for (const run of this.runs) run.update(this.options, this.theme);
+    if (this.stale) this.update();
     this.stale = this.moved = false;
     this.setDepthRange();
     const height = this.parent.clientHeight;
@@ -132,6 +134,12 @@ export class SceneView {
       this.renderer.render(run.scene, this.camera);
     });
     return true;
+  }
+
+  private update(): void {
+    const { color } = this.options;
+    this.scale.follow(color, Math.max(0, ...this.runs.map((run) => run.measure(color))));
+    for (const run of this.runs) run.update(this.options, this.theme, this.scale.top);
   }
 
   private setDepthRange(): void {

@@ -49,6 +49,10 @@ export function publish(shown: Shown, view: SceneView | null): void {
     get problems() {
       return shown.problems;
     },
+    /** The value at the end of the scale of colours. */
+    get scale() {
+      return view?.scale.top ?? 0;
+    },
     get triangles() {
       return view?.runs[0]?.bodies.triangleCount ?? 0;
     },

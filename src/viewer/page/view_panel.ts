@@ -52,22 +52,22 @@ export class ViewPanel {
 
   showLegend(theme: Theme): void {
     const { color } = this.view.options;
-    const scales = this.view.runs.map((run) => run.bodies.particleColors.scale);
-    const key = `${color} ${scales.join(' ')} ${theme.contact.getHexString()}`;
+    const { top } = this.view.scale;
+    const limits = color === 'stretch' ? [...new Set(this.view.runs.map((run) => run.stretchLimit))].filter((limit) => limit > 0) : [];
+    const key = `${color} ${top} ${limits.join(' ')} ${this.view.runs.length} ${theme.contact.getHexString()}`;
     if (key === this.legendKey) return;
     this.legendKey = key;
-    this.legend.hidden = color === 'plain' || scales.length === 0;
+    this.legend.hidden = color === 'plain' || this.view.runs.length === 0;
     if (color === 'contact') {
       const swatch = element('i');
       swatch.style.background = `#${theme.contact.getHexString()}`;
       this.legend.replaceChildren(swatch, 'in contact');
     } else if (color !== 'plain') {
-      const bar = element('div', { className: 'scale' });
+      const bar = element('div', { className: 'scale' }, ...limits.map((limit) => limitMark(limit, top)));
       bar.style.background = SCALE_CSS;
-      const unit = color === 'speed' ? 'm/s' : '';
-      const ends = scales.map((scale) => `${short(scale)} ${unit}`.trim()).join(' | ');
-      const title = color === 'speed' ? 'speed' : 'stretch';
-      this.legend.replaceChildren(title, element('span', { textContent: '0' }), bar, element('span', { textContent: ends }));
+      const [title, unit] = color === 'speed' ? ['speed', 'm/s'] : ['stretch of structural springs', ''];
+      const end = element('span', { textContent: `${short(top)} ${unit}`.trim() });
+      this.legend.replaceChildren(title, element('span', { textContent: '0' }), bar, end);
     }
   }
 
@@ -77,4 +77,11 @@ export class ViewPanel {
     this.view.options[name] = on;
     this.view.invalidate();
   }
+}
+
+/** The limit of stretch on the bar of colours. */
+function limitMark(limit: number, top: number): HTMLElement {
+  const mark = element('b', { className: 'limit', title: `stretch limit ${short(limit)}` }, element('span', { textContent: `limit ${short(limit)}` }));
+  mark.style.left = `${(100 * limit) / top}%`;
+  return mark;
 }
