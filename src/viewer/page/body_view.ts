@@ -1,22 +1,24 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  DoubleSide,
   DynamicDrawUsage,
   Group,
   LineBasicMaterial,
   LineSegments,
   Mesh,
-  MeshLambertMaterial,
 } from 'three';
+import type { MeshStandardMaterial } from 'three';
 import { ParticleColors } from './colors';
 import { Dots } from './dots';
+import { looksOf, surfaceMaterial } from './looks';
 import { vertexNormals } from './normals';
 import { IN_CONTACT, PINNED } from './protocol';
 import { RopeView } from './rope_view';
 import type { RunModel } from './run_model';
 import type { Theme } from './theme';
 import type { ViewOptions } from './view_options';
+
+const MANY_PINS = 20;
 
 /** The bodies of a run: surfaces, ropes, springs, particles and marks. */
 export class BodyView {
@@ -25,7 +27,8 @@ export class BodyView {
   private readonly positions: BufferAttribute;
   private readonly normals: BufferAttribute;
   private readonly colors: BufferAttribute;
-  private readonly surface: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly surface: Mesh<BufferGeometry, MeshStandardMaterial[]>;
+  private readonly inside = { value: 1 };
   private removals = 0;
   private readonly rope: RopeView | null;
   private readonly springs: LineSegments<BufferGeometry, LineBasicMaterial>;
@@ -49,7 +52,8 @@ export class BodyView {
     const surface = this.geometry(model.triangles);
     surface.setAttribute('normal', this.normals);
     surface.setAttribute('color', this.colors);
-    this.surface = new Mesh(surface, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
+    this.surface = new Mesh(surface, this.surfaceMaterials(surface));
+    this.surface.castShadow = this.surface.receiveShadow = true;
     this.tubeRadius = ropeRadius(model, size);
     this.rope = topology.segments.length > 0 ? new RopeView(topology.segments, this.tubeRadius) : null;
     const springs = this.geometry(model.springs);
@@ -57,7 +61,7 @@ export class BodyView {
     this.springs = new LineSegments(springs, new LineBasicMaterial());
     this.particles = new Dots(this.positions, 4);
     this.particles.chooseAll();
-    this.pins = new Dots(this.positions, 9);
+    this.pins = new Dots(this.positions, pinSize(model));
     this.contacts = new Dots(this.positions, 6);
     this.mark = new Dots(this.positions, 15, 2);
     const dots = [this.particles, this.pins, this.contacts, this.mark].map(({ points }) => points);
@@ -105,13 +109,37 @@ export class BodyView {
   }
 
   dispose(): void {
-    for (const part of [this.surface, this.springs]) {
-      part.geometry.dispose();
-      part.material.dispose();
-    }
+    this.surface.geometry.dispose();
+    for (const material of this.surface.material) material.dispose();
+    this.springs.geometry.dispose();
+    this.springs.material.dispose();
     this.rope?.dispose();
     this.markedSprings?.dispose();
     for (const dots of [this.particles, this.pins, this.contacts, this.mark]) dots.dispose();
+  }
+
+  /** A material for each look; triangles of a body follow each other. */
+  private surfaceMaterials(geometry: BufferGeometry): MeshStandardMaterial[] {
+    const { bodies } = this.model.scene;
+    const { triangles } = this.model.topology;
+    const looks = looksOf(this.model.scene);
+    const materials: MeshStandardMaterial[] = [];
+    let made = '';
+    let begin = 0;
+    bodies.forEach(({ first, count }, k) => {
+      let end = begin;
+      while (end < triangles.length && triangles[end] < first + count) end += 3;
+      const { roughness, sheen } = looks[k];
+      const key = `${roughness} ${sheen}`;
+      if (key !== made) {
+        materials.push(surfaceMaterial({ sheen: { value: sheen }, inside: this.inside }));
+        materials[materials.length - 1].roughness = roughness;
+      }
+      made = key;
+      if (end > begin) geometry.addGroup(begin, end - begin, materials.length - 1);
+      begin = end;
+    });
+    return materials;
   }
 
   private geometry(index: Uint32Array): BufferGeometry {
@@ -124,6 +152,7 @@ export class BodyView {
   /** Springs on a surface take a colour of their own, or they could not be seen on it. */
   private paint(options: ViewOptions, theme: Theme): void {
     const byParticle = options.color !== 'plain' && !options.surface;
+    this.inside.value = options.color === 'plain' ? 0.72 : 1;
     const material = this.springs.material;
     if (material.vertexColors !== byParticle) {
       material.vertexColors = byParticle;
@@ -150,6 +179,13 @@ export class BodyView {
     this.markedSprings?.mark(theme.mark);
     this.markedSprings?.place(this.model.positions);
   }
+}
+
+/** Many pins would hide what they hold. */
+function pinSize(model: RunModel): number {
+  let count = 0;
+  for (const state of model.states) if (state & PINNED) ++count;
+  return count > MANY_PINS ? 4 : 9;
 }
 
 /** A rope is drawn as thick as its contact gap, but thick enough to be seen. */

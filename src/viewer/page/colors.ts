@@ -1,4 +1,5 @@
 import { Color } from 'three';
+import { looksOf } from './looks';
 import { IN_CONTACT, STRUCTURAL } from './protocol';
 import type { RunModel } from './run_model';
 import type { Theme } from './theme';
@@ -73,6 +74,10 @@ export class ParticleColors {
     this.colors = new Float32Array(3 * count);
     this.values = new Float32Array(count);
     this.plain = new Float32Array(3 * count);
+    const looks = looksOf(model.scene);
+    model.scene.bodies.forEach(({ first, count: size }, k) => {
+      for (let i = first; i < first + size; ++i) looks[k].color.toArray(this.plain, 3 * i);
+    });
   }
 
   /** Computes what is shown by colour, and returns a value that the scale has to contain. */
@@ -86,7 +91,6 @@ export class ParticleColors {
   /** After `measure`. Returns whether colours have changed. */
   update(mode: ColorMode, theme: Theme, top: number): boolean {
     const stale = this.theme !== theme || this.mode !== mode;
-    if (this.theme !== theme) this.setPlain(theme);
     this.theme = theme;
     this.mode = mode;
     if (mode === 'plain') {
@@ -96,12 +100,6 @@ export class ParticleColors {
     if (mode === 'contact') this.colorContacts(theme);
     else this.colorValues(top);
     return true;
-  }
-
-  private setPlain(theme: Theme): void {
-    this.model.scene.bodies.forEach(({ first, count }, k) => {
-      for (let i = first; i < first + count; ++i) theme.bodies[k % theme.bodies.length].toArray(this.plain, 3 * i);
-    });
   }
 
   private colorContacts(theme: Theme): void {

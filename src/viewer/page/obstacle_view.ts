@@ -1,15 +1,22 @@
-import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, MeshLambertMaterial } from 'three';
+import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, MeshStandardMaterial } from 'three';
+import type { Vector3 } from 'three';
+import { FloorView } from './floor_view';
 import { creased, vertexNormals } from './normals';
 import type { Mesh as MeshData, Motion } from './protocol';
 import type { Theme } from './theme';
 
 /** An obstacle: fixed, moved as a rigid body, or deforming. */
 export class ObstacleView {
-  readonly mesh: Mesh<BufferGeometry, MeshLambertMaterial>;
+  readonly mesh: Mesh<BufferGeometry, MeshStandardMaterial>;
 
+  /** Of a half-space: what is drawn in place of the mesh, which is only a part of it. */
+  readonly floor: FloorView | null;
+
+  /** `floor` says where the scene is [m] if the obstacle is a half-space. */
   constructor(
     private readonly data: MeshData,
     readonly motion: Motion,
+    floor: { center: Vector3; radius: number } | null,
   ) {
     const geometry = new BufferGeometry();
     if (motion === 'deforming') {
@@ -23,10 +30,12 @@ export class ObstacleView {
       geometry.setAttribute('normal', new BufferAttribute(normals, 3));
     }
     // Bodies that lie on the obstacle are in front of it.
-    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    const material = new MeshStandardMaterial({ side: DoubleSide, roughness: 0.8, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.mesh = new Mesh(geometry, material);
     this.mesh.matrixAutoUpdate = false;
     this.mesh.frustumCulled = false;
+    this.mesh.castShadow = this.mesh.receiveShadow = true;
+    this.floor = floor && new FloorView(data, floor.center, floor.radius);
   }
 
   /** Vertices that picking tests, in the obstacle's frame. */
@@ -47,6 +56,7 @@ export class ObstacleView {
       g, h, i, z,
       0, 0, 0, 1);
     this.mesh.matrixWorldNeedsUpdate = true;
+    this.floor?.setMatrix(this.mesh.matrix);
   }
 
   setVertices(vertices: Float32Array): void {
@@ -59,11 +69,13 @@ export class ObstacleView {
   }
 
   update(visible: boolean, theme: Theme): void {
-    this.mesh.visible = visible;
+    this.mesh.visible = visible && !this.floor;
+    this.floor?.update(visible, theme);
     this.mesh.material.color.copy(theme.obstacle);
   }
 
   dispose(): void {
+    this.floor?.dispose();
     this.mesh.geometry.dispose();
     this.mesh.material.dispose();
   }

@@ -9,6 +9,7 @@ import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SceneMes
 import { ReplayPlayer } from './replay_player';
 import { RunModel } from './run_model';
 import { copyScene, downloadText, objText, Recorder, savePicture } from './saving';
+import { DIRECTIONS } from './scene_view';
 import type { SceneView } from './scene_view';
 import { Settings } from './settings';
 import type { Source, SourceListener } from './source';
@@ -60,7 +61,7 @@ export class Page implements SourceListener {
       step: () => this.send({ do: 'step' }),
       frame: () => this.singleFrame(),
       reset: () => (this.recorded ? this.player.seek(1) : this.send({ do: 'reset' })),
-      fit: () => view.fit(),
+      fit: (direction) => view.fit(DIRECTIONS[direction]),
       speed: (factor) => (this.recorded ? this.player.setSpeed(factor) : this.send({ do: 'speed', factor })),
       every: (steps) => this.send({ do: 'every', steps }),
       compare: (integrator) => this.send(integrator ? { do: 'compare', integrator } : { do: 'single' }),

@@ -1,5 +1,6 @@
-import { PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
+import { NeutralToneMapping, PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { AxisCross } from './axis_cross';
 import { ColorScale } from './colors';
 import type { RunModel } from './run_model';
 import { RunView } from './run_view';
@@ -11,7 +12,14 @@ import type { ViewOptions } from './view_options';
 export interface Rect { x: number; y: number; width: number; height: number }
 
 const MARGIN = 1.12;
-const VIEW_DIRECTION = new Vector3(0.55, 0.38, 1).normalize();
+/** From where the picture is seen. */
+export const DIRECTIONS = {
+  usual: new Vector3(0.55, 0.38, 1).normalize(),
+  front: new Vector3(0, 0, 1),
+  side: new Vector3(1, 0, 0),
+  // Not quite upright, or left and right would be undefined.
+  top: new Vector3(0, 1, 1e-3).normalize(),
+};
 
 /** The picture: up to two runs, side by side, through one camera. */
 export class SceneView {
@@ -26,12 +34,20 @@ export class SceneView {
   private radius = 1;
   private stale = true;
   private moved = true;
+  /** The user has moved the camera: the picture is not fitted again by itself. */
+  private chosen = false;
+  private direction = DIRECTIONS.usual;
+  private readonly followed = new Vector3();
+  private readonly axes = new AxisCross();
 
   /** Throws where there is no WebGL. */
   constructor(private readonly parent: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.autoUpdate = false;
+    this.renderer.toneMapping = NeutralToneMapping;
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute('role', 'img');
     this.canvas.setAttribute('aria-label', 'Simulation');
@@ -40,14 +56,17 @@ export class SceneView {
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.listenToKeyEvents(this.canvas);
     this.controls.addEventListener('change', () => this.touch());
+    this.controls.addEventListener('start', () => (this.chosen = true));
     new ResizeObserver(() => this.resize()).observe(parent);
     this.resize();
   }
 
   setRun(number: number, model: RunModel | null): void {
+    const before = this.runs.length;
     this.runs[number]?.dispose();
     if (model) this.runs[number] = new RunView(model);
     else this.runs.length = Math.min(this.runs.length, number);
+    if (this.runs.length > 0 && this.runs.length !== before && !this.chosen) this.fit(this.direction);
     this.invalidate();
   }
 
@@ -90,25 +109,27 @@ export class SceneView {
     return rect;
   }
 
-  fit(): void {
+  fit(direction = DIRECTIONS.usual): void {
     if (!this.runs[0]) return;
+    this.chosen = false;
+    this.direction = direction;
     const box = this.runs[0].box();
     const center = box.getCenter(new Vector3());
     this.radius = Math.max(box.getSize(new Vector3()).length() / 2, 1e-6);
     const { width, height } = this.rects()[0];
     const vertical = Math.tan((this.camera.fov * Math.PI) / 360);
     const horizontal = vertical * (width / Math.max(height, 1));
-    const right = new Vector3(0, 1, 0).cross(VIEW_DIRECTION).normalize();
-    const up = VIEW_DIRECTION.clone().cross(right);
+    const right = new Vector3(0, 1, 0).cross(direction).normalize();
+    const up = direction.clone().cross(right);
     // The nearest distance at which all corners of the box are in the picture.
     let distance = this.radius;
     for (let k = 0; k < 8; ++k) {
       const corner = new Vector3(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z).sub(center);
       const across = Math.max(Math.abs(corner.dot(right)) / horizontal, Math.abs(corner.dot(up)) / vertical);
-      distance = Math.max(distance, MARGIN * across + corner.dot(VIEW_DIRECTION));
+      distance = Math.max(distance, MARGIN * across + corner.dot(direction));
     }
     this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(VIEW_DIRECTION, distance);
+    this.camera.position.copy(center).addScaledVector(direction, distance);
     this.controls.update();
     this.touch();
   }
@@ -116,6 +137,7 @@ export class SceneView {
   /** Draws if something has changed. Returns whether it has. */
   draw(): boolean {
     if (!this.stale && !this.moved) return false;
+    const shadows = this.stale;
     if (this.stale) this.update();
     this.stale = this.moved = false;
     this.setDepthRange();
@@ -127,12 +149,13 @@ export class SceneView {
     }
     this.runs.forEach((run, number) => {
       const rect = this.aim(number);
-      run.setHaze(this.theme.background, this.radius, this.camera.position.distanceTo(this.controls.target));
       const bottom = height - rect.y - rect.height;
       this.renderer.setViewport(rect.x, bottom, rect.width, rect.height);
       this.renderer.setScissor(rect.x, bottom, rect.width, rect.height);
+      this.renderer.shadowMap.needsUpdate = shadows;
       this.renderer.render(run.scene, this.camera);
     });
+    this.axes.show(this.camera.matrixWorldInverse);
     return true;
   }
 
@@ -140,6 +163,17 @@ export class SceneView {
     const { color } = this.options;
     this.scale.follow(color, Math.max(0, ...this.runs.map((run) => run.measure(color))));
     for (const run of this.runs) run.update(this.options, this.theme, this.scale.top);
+    if (this.runs[0]) this.follow(this.runs[0].center);
+  }
+
+  /** Moves the camera as the bodies have moved since the last frame. */
+  private follow(center: Vector3): void {
+    const moved = center.clone().sub(this.followed);
+    this.followed.copy(center);
+    if (!this.options.follow || !(moved.length() < this.radius)) return;
+    this.controls.target.add(moved);
+    this.camera.position.add(moved);
+    this.camera.updateMatrixWorld();
   }
 
   private setDepthRange(): void {
@@ -150,6 +184,7 @@ export class SceneView {
 
   private resize(): void {
     this.renderer.setSize(this.parent.clientWidth, this.parent.clientHeight);
+    if (!this.chosen) this.fit(this.direction);
     this.touch();
     // Or the picture stays empty until the next animation frame.
     this.draw();

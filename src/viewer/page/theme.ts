@@ -1,10 +1,12 @@
 import { Color } from 'three';
 
-/** Colours of the picture. Bodies take the palette of Okabe and Ito, which colour-blind people can tell apart. */
+/** Colours of the picture, but for those of the bodies. */
 export interface Theme {
   background: Color;
-  bodies: Color[];
   obstacle: Color;
+  floor: Color;
+  /** The floor is multiplied by it along the lines of its grid. */
+  grid: Color;
   spring: Color;
   particle: Color;
   pin: Color;
@@ -13,12 +15,11 @@ export interface Theme {
   drag: Color;
 }
 
-const BODIES = ['#4c86c6', '#d9972b', '#2f9e7f', '#b9709a', '#6db6dc', '#c26a33'];
-
 export const LIGHT: Theme = {
   background: new Color('#f4f5f7'),
-  bodies: BODIES.map((name) => new Color(name)),
-  obstacle: new Color('#b4b9c2'),
+  obstacle: new Color('#98a0ad'),
+  floor: new Color('#e3e5e9'),
+  grid: new Color('#a9b0bc'),
   spring: new Color('#33404f'),
   particle: new Color('#1d2733'),
   pin: new Color('#1b2a41'),
@@ -29,8 +30,9 @@ export const LIGHT: Theme = {
 
 export const DARK: Theme = {
   background: new Color('#14171c'),
-  bodies: BODIES.map((name) => new Color(name)),
-  obstacle: new Color('#5b636f'),
+  obstacle: new Color('#828b99'),
+  floor: new Color('#3a3e45'),
+  grid: new Color(2.2, 2.3, 2.5),
   spring: new Color('#c3ccd8'),
   particle: new Color('#e6ebf2'),
   pin: new Color('#f2f5fa'),

@@ -2,13 +2,15 @@ import { control, setOptions } from './dom';
 import { INTEGRATORS } from './integrators';
 import type { StateMessage } from './protocol';
 
+export type Direction = 'usual' | 'front' | 'side' | 'top';
+
 /** What the toolbar asks for. */
 export interface ToolbarActions {
   play(playing: boolean): void;
   step(): void;
   frame(): void;
   reset(): void;
-  fit(): void;
+  fit(direction: Direction): void;
   speed(factor: number): void;
   every(steps: number): void;
   compare(integrator: string | null): void;
@@ -18,6 +20,7 @@ export interface ToolbarActions {
 }
 
 const TAKES_LETTERS = 'select, textarea, input:not([type="checkbox"], [type="range"])';
+const VIEW_KEYS: Record<string, Direction> = { f: 'usual', 1: 'front', 2: 'side', 3: 'top' };
 const TAKES_SPACE = 'button, summary, input';
 
 /** Playback, speed, examples and the second run, by buttons and by keys. */
@@ -33,8 +36,10 @@ export class Toolbar {
 
   constructor(private readonly actions: ToolbarActions) {
     this.playButton.addEventListener('click', () => actions.play(!this.playing));
-    const buttons = { step: actions.step, 'single-frame': actions.frame, reset: actions.reset, fit: actions.fit };
+    const buttons = { step: actions.step, 'single-frame': actions.frame, reset: actions.reset };
     for (const [name, act] of Object.entries(buttons)) control(name).addEventListener('click', () => act());
+    const views: Record<string, Direction> = { fit: 'usual', front: 'front', side: 'side', top: 'top' };
+    for (const [name, direction] of Object.entries(views)) control(name).addEventListener('click', () => actions.fit(direction));
     this.speed.addEventListener('change', () => actions.speed(Number(this.speed.value)));
     this.every.addEventListener('change', () => actions.every(Math.max(Math.round(Number(this.every.value)) || 0, 0)));
     setOptions(this.compare, [{ value: '', label: 'nothing' }, ...INTEGRATORS]);
@@ -91,7 +96,7 @@ export class Toolbar {
     if (event.key === ' ') this.actions.play(!this.playing);
     else if (event.key === '.') this.actions.frame();
     else if (event.key === 'r') this.actions.reset();
-    else if (event.key === 'f') this.actions.fit();
+    else if (event.key in VIEW_KEYS) this.actions.fit(VIEW_KEYS[event.key]);
     else return;
     event.preventDefault();
   }
