@@ -38,6 +38,7 @@ export class BodyView {
   private readonly pins: Dots;
   private readonly contacts: Dots;
   private readonly mark: Dots;
+  private readonly hovered: Dots;
 
   /** `size` is the extent of the bodies [m]. */
   constructor(
@@ -64,7 +65,8 @@ export class BodyView {
     this.pins = new Dots(this.positions, pinSize(model));
     this.contacts = new Dots(this.positions, 6);
     this.mark = new Dots(this.positions, 15, 2);
-    const dots = [this.particles, this.pins, this.contacts, this.mark].map(({ points }) => points);
+    this.hovered = new Dots(this.positions, 11, 2);
+    const dots = [this.particles, this.pins, this.contacts, this.mark, this.hovered].map(({ points }) => points);
     this.group.add(this.surface, this.springs, ...dots);
     if (this.rope) this.group.add(this.rope.group);
     this.surface.frustumCulled = this.springs.frustumCulled = false;
@@ -100,6 +102,10 @@ export class BodyView {
     this.markDivergence(theme);
   }
 
+  markHovered(particle: number | undefined): void {
+    this.hovered.chooseOne(particle);
+  }
+
   /** The number of triangles that are not torn in the frame shown last. */
   get triangleCount(): number {
     const shown = this.model.triangles;
@@ -115,7 +121,7 @@ export class BodyView {
     this.springs.material.dispose();
     this.rope?.dispose();
     this.markedSprings?.dispose();
-    for (const dots of [this.particles, this.pins, this.contacts, this.mark]) dots.dispose();
+    for (const dots of [this.particles, this.pins, this.contacts, this.mark, this.hovered]) dots.dispose();
   }
 
   /** A material for each look; triangles of a body follow each other. */
@@ -152,7 +158,7 @@ export class BodyView {
   /** Springs on a surface take a colour of their own, or they could not be seen on it. */
   private paint(options: ViewOptions, theme: Theme): void {
     const byParticle = options.color !== 'plain' && !options.surface;
-    this.inside.value = options.color === 'plain' ? 0.72 : 1;
+    this.inside.value = options.color === 'plain' ? 0.82 : 1;
     const material = this.springs.material;
     if (material.vertexColors !== byParticle) {
       material.vertexColors = byParticle;
@@ -164,6 +170,7 @@ export class BodyView {
     this.pins.setColor(theme.pin);
     this.contacts.setColor(theme.contact);
     this.mark.setColor(theme.mark);
+    this.hovered.setColor(theme.contact);
   }
 
   private markDivergence(theme: Theme): void {
@@ -185,7 +192,7 @@ export class BodyView {
 function pinSize(model: RunModel): number {
   let count = 0;
   for (const state of model.states) if (state & PINNED) ++count;
-  return count > MANY_PINS ? 4 : 9;
+  return count > MANY_PINS ? 4 : 8;
 }
 
 /** A rope is drawn as thick as its contact gap, but thick enough to be seen. */

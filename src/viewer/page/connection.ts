@@ -37,10 +37,17 @@ export class Connection implements Source {
     socket.onclose = () => {
       this.socket = null;
       this.listener?.connected(false);
+      void this.probe();
       setTimeout(() => this.connect(), this.retryMs);
       this.retryMs = Math.min(1.5 * this.retryMs, LAST_RETRY_MS);
     };
     this.socket = socket;
+  }
+
+  /** Tells why there is no connection: a program that was started again has another token, and refuses this one. */
+  private async probe(): Promise<void> {
+    const refused = await fetch(location.href, { cache: 'no-store' }).then(({ status }) => status === 403, () => false);
+    if (!this.socket || this.socket.readyState !== WebSocket.OPEN) this.listener?.lost(refused);
   }
 
   private receive(data: string | ArrayBuffer): void {

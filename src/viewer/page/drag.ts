@@ -9,6 +9,9 @@ const CLICK_PX = 4;
 
 interface Held extends Pick {
   pointer: number;
+  /** Where the pointer took it. */
+  start: Vector2;
+  dragged: boolean;
   /** From the particle to the pointer, when it was taken [pixels]. */
   offset: Vector2;
   plane: Plane;
@@ -33,6 +36,7 @@ export class Drag {
   constructor(
     private readonly view: SceneView,
     private readonly send: (command: Command) => void,
+    private readonly notify: { dragged(): void; selected(pick: Pick | null): void },
   ) {
     const { canvas } = view;
     // Before OrbitControls, which listens to the canvas itself.
@@ -41,7 +45,10 @@ export class Drag {
     canvas.addEventListener('pointermove', (event) => this.move(event));
     canvas.addEventListener('pointerup', (event) => this.lift(event));
     canvas.addEventListener('pointercancel', (event) => this.lift(event));
-    canvas.addEventListener('pointerleave', () => (this.hover = null));
+    canvas.addEventListener('pointerleave', () => {
+      this.hover = null;
+      view.hover(null);
+    });
   }
 
   /** To be called in each animation frame: sends the newest target. */
@@ -52,8 +59,9 @@ export class Drag {
       if (this.held.moved) this.send({ do: 'drag', target: this.held.target.toArray() });
       this.held.moved = false;
     } else if (this.hover) {
-      const found = this.enabled && pick(this.view, this.hover.x, this.hover.y, true);
+      const found = this.enabled ? pick(this.view, this.hover.x, this.hover.y) : null;
       this.view.canvas.style.cursor = found ? 'grab' : '';
+      this.view.hover(found);
       this.hover = null;
     }
   }
@@ -78,10 +86,11 @@ export class Drag {
     if (!place) return;
     const target = new Vector3().fromArray(run.model.positions, 3 * found.particle);
     const plane = new Plane().setFromNormalAndCoplanarPoint(this.view.camera.getWorldDirection(new Vector3()), target);
-    this.held = { ...found, pointer: event.pointerId, offset: new Vector2(x - place.x, y - place.y), plane, target, moved: false };
+    this.held = { ...found, pointer: event.pointerId, start: new Vector2(x, y), dragged: false, offset: new Vector2(x - place.x, y - place.y), plane, target, moved: false };
     this.view.controls.enabled = false;
     this.view.canvas.setPointerCapture(event.pointerId);
     this.view.canvas.style.cursor = 'grabbing';
+    this.view.hover(found);
     this.send({ do: 'grab', run: found.run, particle: found.particle });
   }
 
@@ -92,6 +101,10 @@ export class Drag {
       return;
     }
     if (event.pointerId !== this.held.pointer) return;
+    if (!this.held.dragged && Math.hypot(x - this.held.start.x, y - this.held.start.y) >= CLICK_PX) {
+      this.held.dragged = true;
+      this.notify.dragged();
+    }
     const rect = this.view.aim(this.held.run);
     const left = (x - this.held.offset.x - rect.x) / rect.width;
     const top = (y - this.held.offset.y - rect.y) / rect.height;
@@ -102,6 +115,7 @@ export class Drag {
   private lift(event: PointerEvent): void {
     if (this.held?.pointer === event.pointerId) {
       if (this.held.moved) this.tick();
+      if (!this.held.dragged && event.type === 'pointerup') this.notify.selected({ run: this.held.run, particle: this.held.particle });
       this.letGo(event.type === 'pointerup' && event.shiftKey);
     } else if (this.pressedPin?.pointer === event.pointerId) {
       const { run, particle, x, y } = this.pressedPin;

@@ -45,11 +45,14 @@ export function numberInput(label: string, testid: string): HTMLInputElement {
 abstract class BaseField implements Field {
   readonly node = element('div', { className: 'field' });
   protected readonly problem = element('p', { className: 'problem', hidden: true });
+  private readonly note = element('p', { className: 'note', hidden: true });
+  private noted = '';
   private scene: SceneJson = {};
   private step = 0;
 
   constructor(protected readonly keys: readonly string[]) {
     this.problem.setAttribute('role', 'alert');
+    this.note.setAttribute('role', 'status');
   }
 
   owns(key: string): boolean {
@@ -61,12 +64,25 @@ abstract class BaseField implements Field {
     this.step = step;
     this.tell([]);
     this.refresh(scene, step);
+    this.note.textContent = this.noted;
+    this.note.hidden = this.noted === '';
+    this.noted = '';
   }
 
   tell(texts: string[]): void {
     this.problem.hidden = texts.length === 0;
     this.problem.textContent = texts.join('\n');
     if (texts.length > 0) this.refresh(this.scene, this.step);
+  }
+
+  /** A sentence about a change, which is shown once the change is in force. */
+  protected explain(text: string): void {
+    this.noted = text;
+  }
+
+  /** Adds what all fields end with. */
+  protected finish(): void {
+    this.node.append(this.problem, this.note);
   }
 
   protected notANumber(text: string): void {
@@ -76,8 +92,19 @@ abstract class BaseField implements Field {
   protected abstract refresh(scene: SceneJson, step: number): void;
 }
 
+/** A mark of settings whose change begins the run anew. */
+function labelText(label: string, restarts: boolean): HTMLElement {
+  const text = element('span', { textContent: label });
+  if (restarts) text.append(element('span', { className: 'restarts', textContent: ' \u21bb', title: 'A change begins the run anew' }));
+  return text;
+}
+
 export interface NumberSpec {
   label: string;
+  /** A change begins the run anew. */
+  restarts?: boolean;
+  /** A value that the scene takes instead, and a sentence that says so. */
+  snap?(value: number): { value: number; note: string };
   testid: string;
   placeholder?: string;
   /** The present value. */
@@ -98,18 +125,76 @@ export class NumberField extends BaseField {
     super(spec.keys);
     this.input = numberInput(spec.label, spec.testid);
     this.input.placeholder = spec.placeholder ?? '';
-    this.node.append(element('label', {}, element('span', { textContent: spec.label }), this.input), this.problem);
-    this.input.addEventListener('change', () => {
+    const label = labelText(spec.label, spec.restarts ?? false);
+    this.node.append(element('label', {}, label, this.input));
+    this.finish();
+    const set = () => {
       const value = parsed(this.input.value);
       if (value === undefined) return this.notANumber(this.input.value);
-      const set = spec.write(value, this.latest);
-      change(set.key, set.value);
-    });
+      const snapped = value !== null && value > 0 ? spec.snap?.(value) : undefined;
+      this.explain(snapped?.note ?? '');
+      const { key, value: written } = spec.write(snapped?.value ?? value, this.latest);
+      change(key, written);
+    };
+    this.input.addEventListener('change', set);
+    dragNumber(label, this.input, set);
   }
 
   protected refresh(scene: SceneJson, step: number): void {
     this.latest = scene;
     this.input.value = numberText(this.spec.read(scene, step));
+  }
+}
+
+const DRAG_PX = 3;
+
+/** A pull on the label, sideways, changes the number: by a factor, so that any size of number is in reach; zero in hundredths. */
+function dragNumber(label: HTMLElement, input: HTMLInputElement, set: () => void): void {
+  let from: { x: number; value: number; moved: boolean } | null = null;
+  label.classList.add('drags');
+  label.addEventListener('pointerdown', (event) => {
+    const value = parsed(input.value);
+    if (event.button !== 0 || typeof value !== 'number') return;
+    from = { x: event.clientX, value, moved: false };
+    label.setPointerCapture(event.pointerId);
+  });
+  label.addEventListener('pointermove', (event) => {
+    if (!from) return;
+    const pixels = event.clientX - from.x;
+    from.moved ||= Math.abs(pixels) >= DRAG_PX;
+    if (!from.moved) return;
+    const value = from.value === 0 ? 0.01 * pixels : from.value * 1.01 ** (Math.sign(from.value) * pixels);
+    input.value = String(Number(value.toPrecision(3)));
+  });
+  const end = () => {
+    if (from?.moved) set();
+    from = null;
+  };
+  label.addEventListener('pointerup', end);
+  label.addEventListener('pointercancel', () => (from = null));
+}
+
+/** A setting that is on or off. */
+export class CheckField extends BaseField {
+  private readonly input = element('input', { type: 'checkbox' });
+
+  constructor(
+    label: string,
+    testid: string,
+    key: string,
+    private readonly read: (scene: SceneJson) => boolean,
+    write: (on: boolean) => Json,
+    change: Change,
+  ) {
+    super([key]);
+    this.input.dataset.testid = testid;
+    this.node.append(element('label', {}, labelText(label, true), this.input));
+    this.finish();
+    this.input.addEventListener('change', () => change(key, write(this.input.checked)));
+  }
+
+  protected refresh(scene: SceneJson): void {
+    this.input.checked = this.read(scene);
   }
 }
 
@@ -125,7 +210,8 @@ export class VectorField extends BaseField {
     group.dataset.testid = testid;
     group.setAttribute('role', 'group');
     group.setAttribute('aria-label', label);
-    this.node.append(element('div', { className: 'labelled' }, element('span', { textContent: label }), group), this.problem);
+    this.node.append(element('div', { className: 'labelled' }, element('span', { textContent: label }), group));
+    this.finish();
     for (const input of this.inputs) {
       input.addEventListener('change', () => {
         const value = this.inputs.map((each) => parsed(each.value) ?? NaN);
@@ -163,7 +249,8 @@ export class SelectField extends BaseField {
     this.select.dataset.testid = testid;
     this.select.setAttribute('aria-label', label);
     this.select.addEventListener('change', () => change(this.select.value));
-    this.node.append(element('label', {}, element('span', { textContent: label }), this.select), this.problem);
+    this.node.append(element('label', {}, labelText(label, true), this.select));
+    this.finish();
   }
 
   protected refresh(scene: SceneJson): void {

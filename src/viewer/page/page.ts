@@ -6,8 +6,9 @@ import { integratorLabel } from './integrators';
 import { Notices } from './notices';
 import { Plots } from './plots';
 import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SceneMessage, TextMessage, Topology } from './protocol';
+import type { Pick } from './picking';
 import { ReplayPlayer } from './replay_player';
-import { RunModel } from './run_model';
+import { particleText, RunModel } from './run_model';
 import { copyScene, downloadText, objText, Recorder, savePicture } from './saving';
 import { DIRECTIONS } from './scene_view';
 import type { SceneView } from './scene_view';
@@ -21,6 +22,7 @@ import { ViewPanel } from './view_panel';
 
 const PLOT_MS = 100;
 const ERROR_MS = 8000;
+const DRAGGED_KEY = 'sprung-dragged';
 
 /** Brings what a source tells to the picture and the panels, and what the user does to the source. */
 export class Page implements SourceListener {
@@ -41,6 +43,7 @@ export class Page implements SourceListener {
   private theme = LIGHT;
   private fitted = '';
   private plotted = { time: 0, stale: true };
+  private selected: Pick | null = null;
   private errorUntil = 0;
   private frameCount = { since: 0, drawn: 0 };
 
@@ -54,7 +57,10 @@ export class Page implements SourceListener {
     });
     this.plots = new Plots(byId('plots'), () => (this.plotted.stale = true), (time) => this.seekTime(time));
     this.panel = new ViewPanel(view);
-    this.drag = new Drag(view, this.send);
+    this.drag = new Drag(view, this.send, {
+      dragged: () => this.firstDragDone(),
+      selected: (pick) => (this.selected = pick),
+    });
     this.player = new ReplayPlayer(this.send, (header, frame) => this.showFrame(header, frame));
     this.toolbar = new Toolbar({
       play: (playing) => this.play(playing),
@@ -98,9 +104,18 @@ export class Page implements SourceListener {
 
   connected(connected: boolean): void {
     this.shown.connected = connected;
+    if (connected) this.setOffline('');
     if (!connected) this.drag.cancel();
     this.errorUntil = 0;
     this.showStatus();
+  }
+
+  lost(refused: boolean): void {
+    this.setOffline(
+      refused
+        ? 'The program was started again: open the new address that it printed.'
+        : 'The program has ended. This page goes on when it is started again with the same address.',
+    );
   }
 
   text(message: TextMessage): void {
@@ -151,6 +166,7 @@ export class Page implements SourceListener {
     this.scenes.clear();
     this.coming.clear();
     this.remove(1);
+    if (mode === 'live') this.showHint();
     if (mode !== 'replay') return;
     this.toolbar.setRecorded();
     const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -177,6 +193,7 @@ export class Page implements SourceListener {
   private setTitle(title: string): void {
     this.shown.title = title;
     byId('title').textContent = title;
+    this.toolbar.setExample(title);
     document.title = title ? `${title} - Sprung` : 'Sprung';
   }
 
@@ -225,6 +242,7 @@ export class Page implements SourceListener {
     const scene = JSON.stringify([bodies, obstacles]);
     if (run !== 0 || scene === this.fitted) return;
     this.fitted = scene;
+    this.selected = null;
     this.panel.setDefaults(model.topology.particles, model.topology.triangles.length + model.topology.segments.length > 0);
     this.view.draw();
     this.view.fit();
@@ -245,6 +263,7 @@ export class Page implements SourceListener {
     const fatal = message.run === null && this.shown.models.length === 0;
     const second = this.shown.models[1];
     this.toolbar.setCompared(second?.scene.integrator ?? null);
+    this.toolbar.setExample(this.shown.title);
     // The field of the integrator is that of the first run.
     const comparison = message.run === 1 && !second;
     if (fatal || comparison || !this.settings.tell(message)) this.notices.showProblems(message.problems, fatal);
@@ -317,6 +336,7 @@ export class Page implements SourceListener {
     this.plotted = { time: now, stale: false };
     this.plots.draw(this.shown.models, this.recorded);
     this.showReadout();
+    this.showSelection();
   }
 
   private showReadout(): void {
@@ -327,6 +347,43 @@ export class Page implements SourceListener {
     control('realtime').textContent = this.recorded || !this.shown.playing ? '' : rates;
     const infeasible = numbers?.infeasible ? `, ${numbers.infeasible} infeasible` : '';
     control('readout').textContent = `frame ${model.frame}, ${model.time.toFixed(3)} s${infeasible}`;
+  }
+
+  /** Why there is no program to talk to; empty if there is one. */
+  private setOffline(text: string): void {
+    const ended = control('ended');
+    ended.textContent = text;
+    ended.hidden = text === '';
+    document.body.toggleAttribute('data-offline', text !== '');
+    for (const part of document.querySelectorAll<HTMLElement>('[data-server]')) part.inert = text !== '';
+  }
+
+  /** Until the first drag of all, the page says that there is something to drag. */
+  private showHint(): void {
+    let done = false;
+    try {
+      done = localStorage.getItem(DRAGGED_KEY) !== null;
+    } catch {
+      // A browser without storage shows the hint each time.
+    }
+    control('hint').hidden = done;
+  }
+
+  private firstDragDone(): void {
+    control('hint').hidden = true;
+    try {
+      localStorage.setItem(DRAGGED_KEY, '');
+    } catch {
+      // See showHint.
+    }
+  }
+
+  private showSelection(): void {
+    const model = this.selected && this.shown.models[this.selected.run];
+    const text = model ? particleText(model, this.selected!.particle) : '';
+    const node = control('selection');
+    if (node.textContent !== text) node.textContent = text;
+    node.hidden = text === '';
   }
 
   private showError(text: string): void {

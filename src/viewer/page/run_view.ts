@@ -125,8 +125,8 @@ export class RunView {
       box.union(part);
       for (const offset of pathOf(this.obstacleScene(name))) box.union(part.clone().translate(offset));
     });
-    // What begins flat falls or swings down.
-    box.min.y = Math.min(box.min.y, top - 0.6 * size);
+    // What begins flat falls or swings down, and what hangs stretches.
+    box.min.y = Math.min(box.min.y, top - 0.6 * size, this.obstacles.length === 0 ? bottom - 0.25 * size : Infinity);
     return box;
   }
 

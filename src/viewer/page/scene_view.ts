@@ -76,6 +76,12 @@ export class SceneView {
     this.invalidate();
   }
 
+  /** Marks a particle under the pointer. */
+  hover(pick: { run: number; particle: number } | null): void {
+    this.runs.forEach((run, number) => run.bodies.markHovered(pick?.run === number ? pick.particle : undefined));
+    this.touch();
+  }
+
   /** The runs or the options have changed. */
   invalidate(): void {
     this.stale = true;

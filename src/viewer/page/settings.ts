@@ -1,15 +1,18 @@
-import { element } from './dom';
-import { NumberField, SelectField, valueAt, VectorField } from './fields';
+import { element, short } from './dom';
+import { CheckField, NumberField, SelectField, valueAt, VectorField } from './fields';
 import type { Change, Field, NumberSpec, SceneJson } from './fields';
 import { INTEGRATORS } from './integrators';
 import type { Json, ProblemsMessage, SceneMessage } from './protocol';
 
 const KINDS = ['structural', 'shear', 'bend'] as const;
+/** So many bodies do not fit beside each other. */
+const MANY_BODIES = 3;
 
 /** The panel of settings that may change while a scene runs. */
 export class Settings {
   private fields: Field[] = [];
   private structure = '';
+  private frameRate = 30;
   /** What else a type of integrator was given, so that a choice can be taken back. */
   private readonly integrators = new Map<string, Json>();
 
@@ -23,6 +26,7 @@ export class Settings {
   /** Shows the values of a scene. */
   show(message: SceneMessage): void {
     const { scene } = message;
+    this.frameRate = message.frame_rate;
     const structure = JSON.stringify([Object.keys(object(scene.bodies)), Object.keys(object(scene.obstacles)), springKeys(scene)]);
     if (structure !== this.structure) this.build(scene);
     this.structure = structure;
@@ -39,7 +43,7 @@ export class Settings {
   /** Returns whether there is a field for the problems. */
   tell(message: ProblemsMessage): boolean {
     const field = this.fields.find((each) => each.owns(message.key));
-    field?.tell([...new Set(message.problems.map(({ text }) => text))]);
+    field?.tell([...new Set(message.problems.map(({ rule }) => rule.replace(/^must be /, '')))]);
     return field !== undefined;
   }
 
@@ -53,14 +57,24 @@ export class Settings {
         testid: 'step-size',
         placeholder: 'auto',
         keys: ['step'],
+        snap: (value) => divisorNear(value, this.frameRate),
         read: (_, step) => step,
         write: (value) => ({ key: 'step', value: value ?? 'auto' }),
       }),
+      new CheckField(
+        'run unstable steps',
+        'unstable',
+        'stability',
+        (from) => from.stability === 'warn',
+        (on) => (on ? 'warn' : 'refuse'),
+        this.change,
+      ),
+      number({ ...plain('duration [s]', 'duration', 'duration'), restarts: true }),
       new VectorField('gravity [m/s²]', 'gravity', 'gravity', this.change),
       new VectorField('wind [m/s]', 'wind', 'air.wind', this.change),
-      number({ ...plain('air drag', 'drag', 'air.drag'), placeholder: 'none' }),
+      number({ ...plain('air drag [1/s]', 'drag', 'air.drag'), placeholder: 'none' }),
       number({
-        label: 'stretch limit',
+        label: 'stretch limit [1]',
         testid: 'stretch-limit',
         placeholder: 'none',
         keys: ['stretch_limit', 'stretch_limit.max_stretch'],
@@ -69,22 +83,55 @@ export class Settings {
       }),
     ];
     this.fields = [...general];
-    const groups = Object.keys(object(scene.bodies)).map((name) => this.group(name, bodySpecs(name, scene).map(number)));
+    const bodies = Object.keys(object(scene.bodies));
+    const groups = bodies.map((name) => this.group(name, this.bodyFields(name, scene), bodies.length > MANY_BODIES));
     const obstacles = Object.keys(object(scene.obstacles)).map((name) =>
       number(plain(`friction of ${name}`, `friction-${name}`, `obstacles.${name}.friction`)),
     );
-    if (obstacles.length > 0) groups.push(this.group('obstacles', obstacles));
+    if (obstacles.length > 0) groups.push(this.group('obstacles', obstacles, obstacles.length > MANY_BODIES));
     this.form.replaceChildren(...general.map(({ node }) => node), ...groups);
   }
 
-  private group(title: string, fields: Field[]): HTMLElement {
+  private bodyFields(name: string, scene: SceneJson): Field[] {
+    const fields: Field[] = [];
+    const key = `bodies.${name}`;
+    const has = (own: string) => valueAt(scene, ['bodies', name, own]) !== undefined;
+    const number = (spec: NumberSpec) => new NumberField(spec, this.change);
+    if (has('mass')) fields.push(number({ ...plain('mass [kg]', `mass-${name}`, `${key}.mass`), restarts: true }));
+    if (has('density')) fields.push(number({ ...plain('density', `density-${name}`, `${key}.density`), restarts: true }));
+    fields.push(...bodySpecs(name, scene).map(number));
+    fields.push(number(plain('thickness [m]', `thickness-${name}`, `${key}.thickness`)));
+    if (has('self_contact')) {
+      const isOn = (from: SceneJson) => valueAt(from, ['bodies', name, 'self_contact']) === true;
+      fields.push(new CheckField('self-contact', `self-contact-${name}`, `${key}.self_contact`, isOn, (on) => on, this.change));
+    }
+    return fields;
+  }
+
+  /** Many bodies are folded, each under its name. */
+  private group(title: string, fields: Field[], folded: boolean): HTMLElement {
     this.fields.push(...fields);
-    return element('fieldset', {}, element('legend', { textContent: title }), ...fields.map(({ node }) => node));
+    const nodes = fields.map(({ node }) => node);
+    if (folded) return element('details', {}, element('summary', { textContent: title }), ...nodes);
+    return element('fieldset', {}, element('legend', { textContent: title }), ...nodes);
   }
 }
 
+/** The step nearest to a wish that divides a frame, and what is told of it. */
+function divisorNear(wish: number, frameRate: number): { value: number; note: string } {
+  const steps = 1 / (frameRate * wish);
+  const count = [Math.floor(steps), Math.ceil(steps)]
+    .map((each) => Math.max(each, 1))
+    .reduce((a, b) => (Math.abs(1 / (frameRate * b) - wish) < Math.abs(1 / (frameRate * a) - wish) ? b : a));
+  const value = 1 / (frameRate * count);
+  if (Math.abs(value - wish) <= 1e-6 * wish) return { value, note: '' };
+  const many = count === 1 ? 'one step' : `${count} steps`;
+  return { value, note: `${short(wish, 6)} s does not divide a frame of 1/${short(frameRate, 6)} s: ${many} of ${short(value)} s instead` };
+}
+
 function bodySpecs(name: string, scene: SceneJson): NumberSpec[] {
-  const specs = KINDS.flatMap((kind) => [
+  const own = object(valueAt(scene, ['bodies', name, 'springs']));
+  const specs = KINDS.filter((kind) => own[kind] !== undefined && own[kind] !== null).flatMap((kind) => [
     springSpec(name, kind, scene, 'modulus', 'stiffness'),
     springSpec(name, kind, scene, 'damping_ratio', 'damping'),
   ]);

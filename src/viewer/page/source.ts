@@ -2,6 +2,8 @@ import type { Command, Frame, Header, TextMessage, Topology } from './protocol';
 
 export interface SourceListener {
   connected(connected: boolean): void;
+  /** The server cannot be reached, or refuses the token of the address. */
+  lost(refused: boolean): void;
   text(message: TextMessage): void;
   topology(header: Header, topology: Topology): void;
   frame(header: Header, frame: Frame): void;

@@ -1,4 +1,4 @@
-import { control, setOptions } from './dom';
+import { byId, control, setOptions } from './dom';
 import { INTEGRATORS } from './integrators';
 import type { StateMessage } from './protocol';
 
@@ -19,9 +19,9 @@ export interface ToolbarActions {
   seek(frame: number): void;
 }
 
-const TAKES_LETTERS = 'select, textarea, input:not([type="checkbox"], [type="range"])';
+const TAKES_TEXT = 'textarea, input:not([type="checkbox"], [type="range"])';
 const VIEW_KEYS: Record<string, Direction> = { f: 'usual', 1: 'front', 2: 'side', 3: 'top' };
-const TAKES_SPACE = 'button, summary, input';
+const TAKES_SPACE = 'button, summary, input, select';
 
 /** Playback, speed, examples and the second run, by buttons and by keys. */
 export class Toolbar {
@@ -33,6 +33,8 @@ export class Toolbar {
   private readonly slider = control<HTMLInputElement>('frame');
   private readonly sliderNumber = document.getElementById('frame-number');
   private playing = false;
+  /** The control in focus was reached by Tab. */
+  private tabbed = false;
 
   constructor(private readonly actions: ToolbarActions) {
     this.playButton.addEventListener('click', () => actions.play(!this.playing));
@@ -49,6 +51,17 @@ export class Toolbar {
     });
     this.slider.addEventListener('input', () => actions.seek(Number(this.slider.value)));
     window.addEventListener('keydown', (event) => this.press(event));
+    // Buttons act on the key's release.
+    window.addEventListener('keyup', (event) => {
+      const target = event.target as HTMLElement | null;
+      if (event.key === ' ' && !this.tabbed && target?.matches(TAKES_SPACE) && !target.closest('dialog')) event.preventDefault();
+    });
+    window.addEventListener('pointerdown', () => (this.tabbed = false), { capture: true });
+    control('keys').addEventListener('click', () => byId<HTMLDialogElement>('keys-dialog').showModal());
+    control('panel-toggle').addEventListener('click', () => this.togglePanel());
+    const small = window.matchMedia('(max-width: 820px)');
+    small.addEventListener('change', () => this.togglePanel(!small.matches));
+    this.togglePanel(!small.matches);
   }
 
   setPlaying(playing: boolean): void {
@@ -71,6 +84,12 @@ export class Toolbar {
     if (group) group.hidden = names.length === 0;
   }
 
+  /** The example that is shown, by the title of the scene. */
+  setExample(title: string): void {
+    const name = title.replace(/\.json$/, '');
+    this.example.value = [...this.example.options].some(({ value }) => value === name) ? name : '';
+  }
+
   setCompared(integrator: string | null): void {
     this.compare.value = integrator ?? '';
   }
@@ -89,15 +108,24 @@ export class Toolbar {
     if (this.sliderNumber) this.sliderNumber.textContent = `${frame} / ${this.slider.max}`;
   }
 
+  /** A control that was reached by Tab keeps its own keys; one that was clicked gives them back. */
   private press(event: KeyboardEvent): void {
+    if (event.key === 'Tab') this.tabbed = true;
     const target = event.target as HTMLElement | null;
-    if (event.ctrlKey || event.metaKey || event.altKey || target?.matches(TAKES_LETTERS)) return;
-    if (event.key === ' ' && target?.matches(TAKES_SPACE)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || target?.matches(TAKES_TEXT) || target?.closest('dialog')) return;
+    if (this.tabbed && target?.matches(event.key === ' ' ? TAKES_SPACE : 'select')) return;
     if (event.key === ' ') this.actions.play(!this.playing);
     else if (event.key === '.') this.actions.frame();
     else if (event.key === 'r') this.actions.reset();
+    else if (event.key === 'p') this.togglePanel();
+    else if (event.key === '?') byId<HTMLDialogElement>('keys-dialog').showModal();
     else if (event.key in VIEW_KEYS) this.actions.fit(VIEW_KEYS[event.key]);
     else return;
     event.preventDefault();
+  }
+
+  private togglePanel(open = document.body.dataset.panel === 'closed'): void {
+    document.body.dataset.panel = open ? 'open' : 'closed';
+    control('panel-toggle').setAttribute('aria-expanded', String(open));
   }
 }
