@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs missing packages, builds Sprung with its viewer and shows a scene live in the browser: view.sh [SCENE [OPTION...]]
-# SCENE is the name of an example, a scene file, or the folder of a run. Default: cloth_on_bunny. Options go to `sprung view`.
+# SCENE is the name of an example, a scene file, or the folder of a run. Default: hanging_cloth. Options go to `sprung view`.
 set -euo pipefail
 
 case "${1:-}" in
@@ -10,7 +10,7 @@ case "${1:-}" in
     ;;
 esac
 
-scene="${1:-cloth_on_bunny}"
+scene="${1:-hanging_cloth}"
 shift $(($# > 0))
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 [[ -e "$scene" ]] || scene="$("$here/scene_file.sh" "$scene")"

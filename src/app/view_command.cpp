@@ -7,6 +7,7 @@
 #include "base/files/file_writer.h"
 #include "base/format.h"
 #include "base/parallel.h"
+#include "scene/json/json_text.h"
 #include "viewer/html_export.h"
 #include "viewer/live_session.h"
 #include "viewer/page.h"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,16 +29,29 @@ namespace sprung {
 
 namespace {
 
-/// The scenes beside a scene, which the page offers.
-std::vector<ExampleScene> scenes_beside(const std::filesystem::path& scene) {
-  std::vector<ExampleScene> scenes;
-  const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
+/// Whether a file is a scene: a JSON object with bodies.
+bool is_scene(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const Json json = Json::parse(stream, nullptr, false);
+  return json.is_object() && json.contains("bodies");
+}
+
+void add_scenes(const std::filesystem::path& folder, const std::string& prefix, std::vector<ExampleScene>& scenes) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    if (entry.path().extension() == ".json" && entry.is_regular_file(ignored)) {
-      scenes.push_back({.name = entry.path().stem().string(), .file = entry.path().string()});
-    }
+    if (entry.path().extension() != ".json" || !entry.is_regular_file(ignored) || !is_scene(entry.path())) continue;
+    scenes.push_back({.name = prefix + entry.path().stem().string(), .file = entry.path().string()});
   }
+}
+
+/// The scenes beside a scene and the lessons beside these, which the page offers.
+std::vector<ExampleScene> scenes_beside(const std::filesystem::path& scene) {
+  std::vector<ExampleScene> scenes;
+  std::error_code ignored;
+  const std::filesystem::path own = std::filesystem::absolute(scene, ignored).parent_path();
+  const std::filesystem::path folder = own.filename() == "lessons" ? own.parent_path() : own;
+  add_scenes(folder, "", scenes);
+  add_scenes(folder / "lessons", "lessons/", scenes);
   std::ranges::sort(scenes, {}, &ExampleScene::name);
   return scenes;
 }

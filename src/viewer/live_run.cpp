@@ -6,6 +6,8 @@
 #include "simulation/diagnostics.h"
 #include "simulation/model.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -37,7 +39,7 @@ bool is_one_of(std::string_view name, std::initializer_list<std::string_view> al
 /// Whether a run may continue with a change of this key.
 bool is_live(std::string_view key) {
   const std::vector<std::string_view> names = names_of(key);
-  if (is_one_of(names[0], {"gravity", "air", "stretch_limit"})) return true;
+  if (is_one_of(names[0], {"gravity", "air", "stretch_limit", "step", "stability"})) return true;
   if (names.size() < 3 || !is_one_of(names[0], {"bodies", "obstacles"})) return false;
   if (names[0] == "bodies" && names[2] == "springs") return true;
   return names.size() == 3 && is_one_of(names[2], {"friction", "static_friction", "restitution", "thickness"});
@@ -47,6 +49,27 @@ bool is_live(std::string_view key) {
 bool is_replaced(const std::string& override_text, std::string_view key) {
   const std::string_view own = key_of(override_text);
   return own.starts_with(key) && (own.size() == key.size() || own[key.size()] == '.' || own[key.size()] == '[');
+}
+
+/// Where the scenes have the same bodies, particles have the same numbers.
+bool have_same_bodies(const SpringNetwork& a, const SpringNetwork& b) {
+  return std::ranges::equal(a.bodies, b.bodies, [](const Body& one, const Body& other) {
+    return one.name == other.name && one.particle_count == other.particle_count;
+  });
+}
+
+/// Adds the particles that the hand pinned to the pins of a scene, body by body.
+void add_pins(const SpringNetwork& network, const std::set<Index>& pinned, nlohmann::ordered_json& scene) {
+  for (const Body& body : network.bodies) {
+    nlohmann::ordered_json indices = nlohmann::ordered_json::array();
+    for (const Index i : pinned) {
+      if (i >= body.first_particle && i < body.first_particle + body.particle_count) indices.push_back(i - body.first_particle);
+    }
+    if (indices.empty()) continue;
+    nlohmann::ordered_json& pins = scene["bodies"][body.name]["pins"];
+    if (!pins.is_array()) pins = nlohmann::ordered_json::array();
+    pins.push_back({{"indices", std::move(indices)}});
+  }
 }
 
 /// Continues with the steps of the run, in inner substeps that are no longer than those of the settings.
@@ -77,6 +100,7 @@ std::string LiveRun::changed_scene() const {
   JsonText json = parse_json(scene_text(source_), source_.file);
   std::vector<Problem> problems;
   for (const std::string& change : source_.overrides) apply_override(change, json.document, problems);
+  add_pins(simulator().network(), pinned_, json.document);
   return json_text(json.document);
 }
 
@@ -89,10 +113,7 @@ bool LiveRun::change(const std::vector<std::string>& overrides) {
   PreparedScene changed = prepare_scene(source);
   const bool live = std::ranges::all_of(overrides, [](const std::string& change) { return is_live(key_of(change)); });
   const bool continues = !failure_ && live && continue_with(changed, overrides);
-  if (!continues) {
-    loaded_ = start_scene(std::move(changed));
-    forget_interaction();
-  }
+  if (!continues) begin_anew(start_scene(std::move(changed)));
   source_ = std::move(source);
   return continues;
 }
@@ -111,7 +132,9 @@ bool LiveRun::continue_with(const PreparedScene& changed, const std::vector<std:
              })) {
     simulator.set_air(built.settings.air_drag, built.settings.wind);
   } else if (!all_change([](const auto& names) { return names[0] == "obstacles"; })) {
-    simulator.continue_with(built.network, with_steps_of(simulator.settings(), built.settings));
+    const bool steps_change = std::ranges::any_of(overrides, [](const std::string& change) { return key_of(change) == "step"; });
+    if (steps_change) finish_frame();
+    simulator.continue_with(built.network, steps_change ? built.settings : with_steps_of(simulator.settings(), built.settings));
   }
   for (std::size_t k = 0; k < built.obstacles.size(); ++k) {
     if (built.obstacles[k].material != simulator.obstacles()[k].material) {
@@ -129,18 +152,35 @@ bool LiveRun::continue_with(const PreparedScene& changed, const std::vector<std:
   return false;
 }
 
-void LiveRun::forget_interaction() {
+/// The length of a step may change at the end of a frame alone.
+void LiveRun::finish_frame() {
+  while (!failure_ && simulator().state().step_in_frame != 0) step();
+}
+
+void LiveRun::begin_anew(LoadedScene loaded) {
+  if (!have_same_bodies(loaded.simulator.network(), simulator().network())) {
+    pinned_.clear();
+    released_.clear();
+  }
+  loaded_ = std::move(loaded);
   failure_.reset();
   pull_.reset();
   pulled_ = kNone;
   infeasible_ = 0;
   loaded_.simulator.stop_when(stops_);
+  for (const Index i : pinned_) loaded_.simulator.pin(i);
+  for (const Index i : released_) release(i);
 }
 
-void LiveRun::reset() {
-  loaded_ = load_scene(source_);
-  forget_interaction();
+void LiveRun::keep_pins(const LiveRun& other) {
+  if (!have_same_bodies(simulator().network(), other.simulator().network())) return;
+  pinned_ = other.pinned_;
+  released_ = other.released_;
+  for (const Index i : pinned_) loaded_.simulator.pin(i);
+  for (const Index i : released_) release(i);
 }
+
+void LiveRun::reset() { begin_anew(load_scene(source_)); }
 
 void LiveRun::step() {
   if (failure_) return;
@@ -178,11 +218,16 @@ void LiveRun::drop(bool pin) {
   const std::shared_ptr<PullForce> pull = std::exchange(pull_, nullptr);
   if (!pull || failure_) return;
   loaded_.simulator.remove_force(*pull);
-  if (pin) loaded_.simulator.pin(pulled_);
+  if (!pin) return;
+  loaded_.simulator.pin(pulled_);
+  pinned_.insert(pulled_);
+  released_.erase(pulled_);
 }
 
 void LiveRun::release(Index particle) {
-  if (may_change(particle)) loaded_.simulator.release(particle);
+  if (!may_change(particle)) return;
+  loaded_.simulator.release(particle);
+  if (pinned_.erase(particle) == 0) released_.insert(particle);
 }
 
 Topology LiveRun::topology() const {
@@ -241,7 +286,8 @@ FrameNumbers LiveRun::numbers() const {
           .max_stretch = max_stretch(simulator),
           .contacts = simulator.contact_count(),
           .infeasible = infeasible_,
-          .contact_energy = simulator.contact_energy()};
+          .contact_energy = simulator.contact_energy(),
+          .pull = pull_ ? pull_->total(simulator.positions(), simulator.state().v).norm() : 0.0};
 }
 
 std::uint32_t LiveRun::frame() const { return 1 + static_cast<std::uint32_t>(simulator().state().frame); }

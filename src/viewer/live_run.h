@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,16 @@ class LiveRun {
   /// The scene as its author wrote it, with the changes, as JSON text.
   [[nodiscard]] std::string changed_scene() const;
 
+  /// Takes the pins that the hand set and freed in another run of the same bodies, at the start of this one.
+  void keep_pins(const LiveRun& other);
+
   /// Changes keys of the scene (`key.path=json`). Returns whether the run continues with them; else it begins anew. It continues if
-  /// only quantities change that a simulator can take over: gravity, air, springs, friction and the like, the stretch limit.
-  /// Throws as load_scene(), and is unchanged then.
+  /// only quantities change that a simulator can take over: gravity, air, springs, friction and the like, the stretch limit, the
+  /// step (after the steps that are left of the frame). Pins of the hand stay in both cases, where the particles begin. Throws as
+  /// load_scene(), and is unchanged then.
   bool change(const std::vector<std::string>& overrides);
 
-  /// Begins anew. Throws as load_scene(), if a mesh of the scene is gone, and is unchanged then.
+  /// Begins anew, with the pins of the hand. Throws as load_scene(), if a mesh of the scene is gone, and is unchanged then.
   void reset();
 
   /// One step. Does nothing after a divergence, which failure() then describes. Throws StoppedError if `stops` says so.
@@ -57,7 +62,8 @@ class LiveRun {
 
  private:
   bool continue_with(const PreparedScene& changed, const std::vector<std::string>& overrides);
-  void forget_interaction();
+  void begin_anew(LoadedScene loaded);
+  void finish_frame();
   [[nodiscard]] bool may_change(Index particle) const;
 
   SceneSource source_;
@@ -67,6 +73,9 @@ class LiveRun {
   std::shared_ptr<PullForce> pull_;
   Index pulled_ = kNone;
   Index infeasible_ = 0;  ///< in the last step
+  // By the hand.
+  std::set<Index> pinned_;
+  std::set<Index> released_;
 };
 
 }  // namespace sprung

@@ -28,6 +28,8 @@ constexpr int kMostStepsShownAtOnce = 1'000'000;
 constexpr double kLeastSpeed = 1e-3;
 constexpr double kGreatestSpeed = 1e3;
 
+constexpr auto kLookInterval = std::chrono::milliseconds(300);
+
 double seconds_between(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
 
 }  // namespace
@@ -105,15 +107,15 @@ void LiveSession::simulate() {
   publish_state();
   std::vector<Message> messages;
   while (true) {
-    take_messages(messages);
+    const bool is_due = take_messages(messages);
     if (is_ending()) return;
     for (const Message& message : messages) {
       obey(message);
       if (is_ending()) return;
     }
-    if (!messages.empty()) continue;
+    look_at_file();
+    if (!is_due) continue;
     const auto now = Clock::now();
-    if (play_.speed > 0.0 && now < due_) continue;
     try {
       advance_frame();
     } catch (const StoppedError&) {
@@ -132,15 +134,18 @@ bool LiveSession::is_ending() {
   return ending_;
 }
 
-/// Waits until there are messages, or the next frame is due.
-void LiveSession::take_messages(std::vector<Message>& messages) {
+/// Waits until there are messages, the next frame is due, or it is time to look at the scene's file. Returns whether a frame is
+/// due.
+bool LiveSession::take_messages(std::vector<Message>& messages) {
   std::unique_lock lock(mutex_);
   const auto called = [&] { return ending_ || !messages_.empty(); };
   const auto runs = [&] { return play_.playing && watchers_ > 0 && !runs_.empty() && !all_diverged(); };
-  if (!called() && !runs()) changed_.wait(lock, [&] { return called() || runs(); });
-  if (!called() && play_.speed > 0.0) changed_.wait_until(lock, due_, called);
+  if (!called() && !runs()) changed_.wait_for(lock, kLookInterval, [&] { return called() || runs(); });
+  if (!called() && runs() && play_.speed > 0.0) changed_.wait_until(lock, due_, called);
+  const bool is_due = !called() && runs();
   messages.assign(std::make_move_iterator(messages_.begin()), std::make_move_iterator(messages_.end()));
   messages_.clear();
+  return is_due;
 }
 
 void LiveSession::obey(const Message& message) try {
@@ -237,7 +242,10 @@ void LiveSession::play(bool playing) {
 
 /// Without a run, because the scene had a mistake, loads the scene again.
 void LiveSession::reset() {
-  if (runs_.empty()) return open(first_source_);
+  if (runs_.empty()) {
+    open(first_source_);
+    return;
+  }
   for (const auto& shown : runs_) {
     attempt(shown->number, "", [&] {
       shown->run.reset();
@@ -252,16 +260,39 @@ void LiveSession::open_example(ClientId client, const std::string& name) {
   open({.file = found->file, .overrides = {}, .mesh_paths = first_source_.mesh_paths});
 }
 
-/// A scene with mistakes leaves what is there.
-void LiveSession::open(const SceneSource& source) {
+/// A scene with mistakes leaves what is there. Returns whether the scene was opened.
+bool LiveSession::open(const SceneSource& source) {
+  bool is_open = false;
   attempt(std::nullopt, "", [&] {
     auto opened = std::make_unique<Shown>(0, source);
+    if (!runs_.empty() && runs_.front()->run.source().file == source.file) opened->run.keep_pins(runs_.front()->run);
     end_comparison();
     runs_.clear();
     runs_.push_back(std::move(opened));
     publisher_->show_failure("");
     begin_run(0, false);
+    is_open = true;
   });
+  return is_open;
+}
+
+/// Opens a scene again whose file has changed: what the file says now holds, with the pins of the hand.
+void LiveSession::look_at_file() {
+  const auto now = Clock::now();
+  if (first_source_.text || now - looked_ < kLookInterval) return;
+  looked_ = now;
+  const std::string file = runs_.empty() ? first_source_.file : runs_.front()->run.source().file;
+  std::error_code missing;  // for a moment, as an editor replaces the file
+  const auto written = std::filesystem::last_write_time(file, missing);
+  if (missing || (file == watched_ && written == written_)) return;
+  const bool has_changed = file == watched_;
+  watched_ = file;
+  written_ = written;
+  if (!has_changed) return;
+  SceneSource source{.file = file, .overrides = {}, .mesh_paths = first_source_.mesh_paths};
+  if (file == first_source_.file) source.overrides = first_source_.overrides;
+  if (open(source))
+    publisher_->tell_all(notice_text(std::filesystem::path(file).filename().string() + " has changed and begins anew"));
 }
 
 void LiveSession::compare(const std::string& integrator) {
@@ -270,6 +301,7 @@ void LiveSession::compare(const std::string& integrator) {
     SceneSource source = runs_.front()->run.source();
     source.overrides.push_back("integrator={\"type\":" + Json(integrator).dump() + "}");
     auto second = std::make_unique<Shown>(1, std::move(source));
+    second->run.keep_pins(runs_.front()->run);
     runs_.front()->run.reset();
     runs_.resize(1);
     runs_.push_back(std::move(second));

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -19,7 +20,7 @@
 
 namespace sprung {
 
-/// A scene of the menu.
+/// A scene of the menu. Lessons have a name that begins with "lessons/".
 struct ExampleScene {
   std::string name;
   std::string file;
@@ -51,7 +52,7 @@ class LiveSession final : public ViewSession {
 
   void simulate();
   [[nodiscard]] bool is_ending();
-  void take_messages(std::vector<Message>& messages);
+  [[nodiscard]] bool take_messages(std::vector<Message>& messages);
   void obey(const Message& message);
   void obey(ClientId client, const PageCommand& command);
   [[nodiscard]] bool control(const PageCommand& command);
@@ -60,7 +61,8 @@ class LiveSession final : public ViewSession {
   void play(bool playing);
   void reset();
   void open_example(ClientId client, const std::string& name);
-  void open(const SceneSource& source);
+  bool open(const SceneSource& source);
+  void look_at_file();
   void compare(const std::string& integrator);
   void end_comparison();
   void change(std::optional<std::uint32_t> run, const std::string& key, const std::string& value);
@@ -95,6 +97,10 @@ class LiveSession final : public ViewSession {
   ClientId puller_ = 0;  ///< the page that took hold of a particle last
   std::uint32_t next_generation_ = 1;
   std::chrono::steady_clock::time_point due_;  ///< of the next frame
+  // The file of the scene, as it was when it was looked at last.
+  std::chrono::steady_clock::time_point looked_{};
+  std::string watched_;
+  std::filesystem::file_time_type written_{};
 
   std::thread thread_;
 };

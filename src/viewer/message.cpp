@@ -83,7 +83,7 @@ Bytes frame_message(const MessageHeader& header, const FrameNumbers& numbers, co
   write_header(MessageKind::frame, header, static_cast<Index>(state.positions.cols()), writer);
   for (const double value :
        {numbers.kinetic, numbers.elastic, numbers.gravity, numbers.max_stretch, static_cast<double>(numbers.contacts),
-        numbers.frame_ms, numbers.realtime, static_cast<double>(numbers.infeasible), numbers.contact_energy}) {
+        numbers.frame_ms, numbers.realtime, static_cast<double>(numbers.infeasible), numbers.contact_energy, numbers.pull}) {
     writer.number(static_cast<float>(value));
   }
   writer.array<float>(state.positions);

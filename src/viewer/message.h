@@ -51,6 +51,7 @@ struct FrameNumbers {
   double realtime = 0.0;  ///< factor to real time that is reached
   Index infeasible = 0;
   double contact_energy = 0.0;
+  double pull = 0.0;  ///< the force of the hand [N]
 };
 
 /// The state of a run.

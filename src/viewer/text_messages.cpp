@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace sprung {
 namespace {
@@ -31,6 +33,19 @@ Json obstacles_of(const Simulator& simulator) {
     obstacles.push_back({{"name", obstacle.name}, {"motion", kObstacleMotionNames[static_cast<std::size_t>(motion_of(obstacle))]}});
   }
   return obstacles;
+}
+
+/// Masses of particles [kg], where there are few enough to be drawn each; otherwise empty.
+Json masses_of(const SpringNetwork& network) {
+  constexpr Index kMostDrawn = 300;
+  if (network.particle_count() > kMostDrawn) return Json::array();
+  return std::vector<double>(network.masses.begin(), network.masses.end());
+}
+
+/// The text beside a scene, as of a lesson: NAME.txt of NAME.json.
+Json lesson_of(const std::string& scene_file) {
+  std::ifstream file(std::filesystem::path(scene_file).replace_extension(".txt"));
+  return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
 /// The body of a failure and, of the network, its particle and spring.
@@ -58,6 +73,7 @@ std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live
                   {"run", number},
                   {"generation", generation},
                   {"title", std::filesystem::path(run.source().file).filename().string()},
+                  {"lesson", lesson_of(run.source().file)},
                   {"integrator", integrator.value("type", "verlet")},
                   {"step", loaded.simulator.settings().step},
                   {"steps_per_frame", loaded.simulator.settings().steps_per_frame},
@@ -69,6 +85,7 @@ std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live
                   {"scene", scene},
                   {"changed", Json::parse(run.changed_scene())},
                   {"warnings", loaded.warnings},
+                  {"masses", masses_of(loaded.simulator.network())},
                   {"bodies", bodies_of(loaded.simulator.network())},
                   {"obstacles", obstacles_of(loaded.simulator)}});
 }
@@ -101,6 +118,8 @@ std::string diverged_text(std::uint32_t number, std::uint32_t generation, const 
 std::string obj_message(const std::string& name, const std::string& text) {
   return text_of({{"type", "obj"}, {"name", name}, {"text", text}});
 }
+
+std::string notice_text(const std::string& text) { return text_of({{"type", "notice"}, {"text", text}}); }
 
 std::string error_text(const std::string& text) { return text_of({{"type", "error"}, {"text", text}}); }
 

@@ -91,7 +91,7 @@ struct Received {
   [[nodiscard]] std::uint32_t frame() const { return at<std::uint32_t>(12); }
   [[nodiscard]] double time() const { return at<double>(16); }
   [[nodiscard]] std::uint32_t particles() const { return at<std::uint32_t>(24); }
-  static constexpr std::size_t kHeader = 32 + 9 * sizeof(float);  // with the numbers of a frame
+  static constexpr std::size_t kHeader = 32 + 10 * sizeof(float);  // with the numbers of a frame
   [[nodiscard]] Vector3 position(std::size_t particle) const {
     const std::size_t begin = kHeader + 12 * particle;
     return {at<float>(begin), at<float>(begin + 4), at<float>(begin + 8)};

@@ -42,11 +42,19 @@ std::optional<std::vector<Index>> PullForce::touched() const {
   return particles;
 }
 
+Vector3 PullForce::force_on(const Grip& grip, const Points& x, const Points& v) const {
+  const Vector3 displacement = x.col(grip.particle) - target_ - grip.offset;
+  return -grip.stiffness * displacement - grip.damping * v.col(grip.particle);
+}
+
+Vector3 PullForce::total(const Points& x, const Points& v) const {
+  Vector3 sum = Vector3::Zero();
+  for (const Grip& grip : grips_) sum += force_on(grip, x, v);
+  return sum;
+}
+
 void PullForce::add(const Kinematics& at, Points& forces) const {
-  for (const Grip& grip : grips_) {
-    const Vector3 displacement = at.x.col(grip.particle) - target_ - grip.offset;
-    forces.col(grip.particle) -= grip.stiffness * displacement + grip.damping * at.v.col(grip.particle);
-  }
+  for (const Grip& grip : grips_) forces.col(grip.particle) += force_on(grip, at.x, at.v);
 }
 
 void PullForce::add_derivatives(const Kinematics&, ForceDerivatives& derivatives) const {

@@ -27,6 +27,9 @@ class PullForce final : public Force {
   void set_target(const Vector3& target) { target_ = target; }
   [[nodiscard]] const Vector3& target() const { return target_; }
 
+  /// The force on the body [N] at these positions [m] and velocities [m/s].
+  [[nodiscard]] Vector3 total(const Points& x, const Points& v) const;
+
   [[nodiscard]] std::optional<std::vector<Index>> touched() const override;
   void add(const Kinematics& at, Points& forces) const override;
   void add_derivatives(const Kinematics& at, ForceDerivatives& derivatives) const override;
@@ -38,6 +41,8 @@ class PullForce final : public Force {
     double stiffness;  ///< [N/m], as above with its denominator
     double damping;    ///< [N s/m]
   };
+  [[nodiscard]] Vector3 force_on(const Grip& grip, const Points& x, const Points& v) const;
+
   std::vector<Grip> grips_;
   Vector3 target_;
 };

@@ -10,15 +10,19 @@ import {
 import type { MeshStandardMaterial } from 'three';
 import { ParticleColors } from './colors';
 import { Dots } from './dots';
+import { MassView } from './mass_view';
 import { looksOf, surfaceMaterial } from './looks';
 import { vertexNormals } from './normals';
 import { IN_CONTACT, PINNED } from './protocol';
 import { RopeView } from './rope_view';
 import type { RunModel } from './run_model';
 import type { Theme } from './theme';
+import { VelocityView } from './velocity_view';
 import type { ViewOptions } from './view_options';
 
 const MANY_PINS = 20;
+/** More masses would hide each other. */
+const MOST_BALLS = 30;
 
 /** The bodies of a run: surfaces, ropes, springs, particles and marks. */
 export class BodyView {
@@ -39,6 +43,8 @@ export class BodyView {
   private readonly contacts: Dots;
   private readonly mark: Dots;
   private readonly hovered: Dots;
+  private readonly balls: MassView | null;
+  private readonly velocities: VelocityView;
 
   /** `size` is the extent of the bodies [m]. */
   constructor(
@@ -62,12 +68,17 @@ export class BodyView {
     this.springs = new LineSegments(springs, new LineBasicMaterial());
     this.particles = new Dots(this.positions, 4);
     this.particles.chooseAll();
+    const { masses } = model.scene;
+    const few = masses && masses.length > 0 && masses.length <= MOST_BALLS && topology.triangles.length === 0;
+    this.balls = few ? new MassView(masses, Math.max(0.035 * size, 2 * this.tubeRadius)) : null;
+    this.velocities = new VelocityView(model);
     this.pins = new Dots(this.positions, pinSize(model));
     this.contacts = new Dots(this.positions, 6);
     this.mark = new Dots(this.positions, 15, 2);
     this.hovered = new Dots(this.positions, 11, 2);
     const dots = [this.particles, this.pins, this.contacts, this.mark, this.hovered].map(({ points }) => points);
-    this.group.add(this.surface, this.springs, ...dots);
+    this.group.add(this.surface, this.springs, this.velocities.lines, ...dots);
+    if (this.balls) this.group.add(this.balls.mesh);
     if (this.rope) this.group.add(this.rope.group);
     this.surface.frustumCulled = this.springs.frustumCulled = false;
   }
@@ -77,7 +88,12 @@ export class BodyView {
     const { model } = this;
     this.surface.visible = options.surface && model.topology.triangles.length > 0;
     this.springs.visible = options.springs && model.scene.complete;
-    this.particles.points.visible = options.particles;
+    this.particles.points.visible = options.particles && !this.balls;
+    this.velocities.update(options.velocities, theme);
+    if (this.balls) {
+      this.balls.mesh.visible = options.particles;
+      this.balls.place(model.positions);
+    }
     this.pins.points.visible = options.pins;
     this.contacts.points.visible = options.contacts;
     this.positions.needsUpdate = true;
@@ -91,6 +107,7 @@ export class BodyView {
     }
     const repainted = this.particleColors.update(options.color, theme, top);
     if (repainted) this.colors.needsUpdate = true;
+    if (repainted) this.balls?.paint(this.particleColors.colors);
     if (this.rope) {
       this.rope.group.visible = options.surface;
       if (options.surface) this.rope.place(model.positions);
@@ -120,6 +137,8 @@ export class BodyView {
     this.springs.geometry.dispose();
     this.springs.material.dispose();
     this.rope?.dispose();
+    this.balls?.dispose();
+    this.velocities.dispose();
     this.markedSprings?.dispose();
     for (const dots of [this.particles, this.pins, this.contacts, this.mark, this.hovered]) dots.dispose();
   }

@@ -1,4 +1,5 @@
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
+import { byId, short } from './dom';
 import { pick, project } from './picking';
 import type { Pick } from './picking';
 import { PINNED } from './protocol';
@@ -31,6 +32,7 @@ export class Drag {
   private held: Held | null = null;
   private pressedPin: Pressed | null = null;
   private hover: { x: number; y: number } | null = null;
+  private readonly force = byId('pull-force');
   private readonly raycaster = new Raycaster();
 
   constructor(
@@ -56,6 +58,7 @@ export class Drag {
     if (this.held) {
       this.view.runs[this.held.run]?.showPull(this.held.particle, this.held.target);
       this.view.touch();
+      this.showForce(this.view.runs[this.held.run]?.model.numbers?.pull ?? 0);
       if (this.held.moved) this.send({ do: 'drag', target: this.held.target.toArray() });
       this.held.moved = false;
     } else if (this.hover) {
@@ -101,6 +104,7 @@ export class Drag {
       return;
     }
     if (event.pointerId !== this.held.pointer) return;
+    this.force.style.translate = `${x + 14}px ${y - 26}px`;
     if (!this.held.dragged && Math.hypot(x - this.held.start.x, y - this.held.start.y) >= CLICK_PX) {
       this.held.dragged = true;
       this.notify.dragged();
@@ -125,8 +129,15 @@ export class Drag {
     }
   }
 
+  private showForce(newtons: number): void {
+    const text = `${short(newtons, 2)} N`;
+    if (this.force.textContent !== text) this.force.textContent = text;
+    this.force.hidden = newtons === 0;
+  }
+
   private letGo(pin: boolean): void {
     if (!this.held) return;
+    this.showForce(0);
     this.view.runs[this.held.run]?.showPull(this.held.particle, null);
     this.view.touch();
     this.held = null;

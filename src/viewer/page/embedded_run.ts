@@ -159,6 +159,7 @@ export class EmbeddedRun implements Source {
       realtime: 0,
       infeasible: value('infeasible'),
       contactEnergy: value('contact_energy'),
+      pull: 0,
     };
   }
 }

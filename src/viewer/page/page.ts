@@ -132,7 +132,7 @@ export class Page implements SourceListener {
       this.showDivergence(message);
     } else if (message.type === 'obj') {
       downloadText(message.name, message.text);
-    } else if (message.type === 'error') {
+    } else if (message.type === 'error' || message.type === 'notice') {
       this.showError(message.text);
     } else if (message.type === 'removed') {
       this.remove(message.run);
@@ -185,9 +185,18 @@ export class Page implements SourceListener {
       this.notices.showWarnings(message.warnings);
       this.toolbar.setFrames(message.frames);
       this.offer(message);
+      this.showLesson(message.lesson ?? '');
     } else {
       this.toolbar.setCompared(message.integrator);
     }
+  }
+
+  /** The first line is the title of the lesson. */
+  private showLesson(text: string): void {
+    const lesson = byId('lesson');
+    const [title, ...lines] = text.trim().split('\n');
+    lesson.hidden = title === '';
+    lesson.replaceChildren(element('strong', { textContent: title }), lines.join('\n').trim());
   }
 
   private setTitle(title: string): void {

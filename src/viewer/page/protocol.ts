@@ -25,6 +25,10 @@ export interface SceneMessage {
   scene: { [key: string]: Json };
   changed: Json;
   warnings: string[];
+  /** The text beside the scene, as of a lesson. */
+  lesson?: string;
+  /** Of the particles [kg], where they are few. */
+  masses?: number[];
   bodies: BodyRange[];
   obstacles: { name: string; motion: Motion }[];
   diagnostics?: Diagnostics;
@@ -44,6 +48,7 @@ export interface DivergedMessage {
   stable_step: number | null;
 }
 export interface ObjMessage { type: 'obj'; name: string; text: string }
+export interface NoticeMessage { type: 'notice'; text: string }
 export interface ErrorMessage { type: 'error'; text: string }
 export interface RemovedMessage { type: 'removed'; run: number }
 export type TextMessage =
@@ -53,6 +58,7 @@ export type TextMessage =
   | StateMessage
   | DivergedMessage
   | ObjMessage
+  | NoticeMessage
   | ErrorMessage
   | RemovedMessage;
 
@@ -101,6 +107,8 @@ export interface FrameNumbers {
   realtime: number;
   infeasible: number;
   contactEnergy: number;
+  /** The force of the hand [N]. */
+  pull: number;
 }
 
 export interface Frame {
@@ -182,7 +190,7 @@ export function decodeTopology(buffer: ArrayBuffer): Topology {
 /** All poses come before all deformed vertices. */
 export function decodeFrame(buffer: ArrayBuffer, header: Header, scene: SceneMessage, topology: Topology): Frame {
   const reader = new Reader(buffer);
-  const [kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy] = reader.f32(9);
+  const [kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy, pull] = reader.f32(10);
   const positions = reader.f32(3 * header.particles);
   const speeds = reader.f32(header.particles);
   const states = reader.u8(header.particles);
@@ -195,7 +203,7 @@ export function decodeFrame(buffer: ArrayBuffer, header: Header, scene: SceneMes
     if (obstacle.motion === 'deforming') deformed.push(reader.f32(topology.obstacles[k].vertices.length));
   });
   return {
-    numbers: { kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy },
+    numbers: { kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy, pull },
     positions,
     speeds,
     states,

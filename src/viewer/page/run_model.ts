@@ -7,6 +7,9 @@ export interface BodyState { positions: Float32Array }
 /** One run: its scene and its newest frame. The arrays stay the same ones from frame to frame. */
 export class RunModel {
   readonly positions: Float32Array;
+  /** Those of the frame before, and the time between [s]. */
+  readonly previous: Float32Array;
+  elapsed = 0;
   readonly speeds: Float32Array;
   readonly states: Uint8Array;
   /** Those that are gone in the frame have the same corner three times, or the same end twice. */
@@ -30,6 +33,7 @@ export class RunModel {
   ) {
     const count = topology.particles;
     this.positions = new Float32Array(3 * count);
+    this.previous = new Float32Array(3 * count);
     this.speeds = new Float32Array(count);
     this.states = new Uint8Array(count);
     this.triangles = topology.triangles.slice();
@@ -40,6 +44,10 @@ export class RunModel {
   }
 
   apply(header: Header, frame: Frame): void {
+    if (header.time !== this.time) {
+      this.previous.set(this.positions);
+      this.elapsed = header.time - this.time;
+    }
     this.positions.set(frame.positions);
     this.speeds.set(frame.speeds);
     this.states.set(frame.states);

@@ -60,11 +60,12 @@ export function publish(shown: Shown, view: SceneView | null): void {
       return shown.models[0]?.bodies ?? {};
     },
     get runs() {
-      return shown.models.map(({ frame, time, bodies, scene, diverged, numbers }) => ({
+      return shown.models.map(({ frame, time, bodies, scene, states, diverged, numbers }) => ({
         frame,
         time,
         bodies,
         scene,
+        states,
         diverged: diverged !== null,
         numbers,
       }));

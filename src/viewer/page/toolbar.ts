@@ -1,4 +1,4 @@
-import { byId, control, setOptions } from './dom';
+import { byId, control, element, setOptions } from './dom';
 import { INTEGRATORS } from './integrators';
 import type { StateMessage } from './protocol';
 
@@ -79,7 +79,12 @@ export class Toolbar {
   }
 
   setExamples(names: string[]): void {
-    setOptions(this.example, [{ value: '', label: 'choose' }, ...names.map((name) => ({ value: name, label: name.replaceAll('_', ' ') }))]);
+    const option = (name: string) => element('option', { value: name, textContent: name.replace(/^lessons\//, '').replaceAll('_', ' ') });
+    const groupOf = (label: string, members: string[]) => element('optgroup', { label }, ...members.map(option));
+    const lessons = names.filter((name) => name.startsWith('lessons/'));
+    const others = names.filter((name) => !name.startsWith('lessons/'));
+    this.example.replaceChildren(element('option', { value: '', textContent: 'choose' }), ...others.map(option));
+    if (lessons.length > 0) this.example.append(groupOf('Lessons', lessons));
     const group = document.getElementById('example-group');
     if (group) group.hidden = names.length === 0;
   }
@@ -87,7 +92,7 @@ export class Toolbar {
   /** The example that is shown, by the title of the scene. */
   setExample(title: string): void {
     const name = title.replace(/\.json$/, '');
-    this.example.value = [...this.example.options].some(({ value }) => value === name) ? name : '';
+    this.example.value = [...this.example.options].find(({ value }) => value.replace(/^lessons\//, '') === name)?.value ?? '';
   }
 
   setCompared(integrator: string | null): void {

@@ -1,5 +1,5 @@
 export type ColorMode = 'plain' | 'stretch' | 'speed' | 'contact';
-export type Switch = 'surface' | 'springs' | 'particles' | 'obstacles' | 'pins' | 'contacts' | 'shadows' | 'follow';
+export type Switch = 'surface' | 'springs' | 'particles' | 'obstacles' | 'pins' | 'contacts' | 'shadows' | 'follow' | 'velocities';
 
 /** What of a run is shown, and how. */
 export interface ViewOptions extends Record<Switch, boolean> {
@@ -7,5 +7,5 @@ export interface ViewOptions extends Record<Switch, boolean> {
 }
 
 export function defaultOptions(): ViewOptions {
-  return { surface: true, springs: false, particles: false, obstacles: true, pins: true, contacts: false, shadows: true, follow: false, color: 'plain' };
+  return { surface: true, springs: false, particles: false, obstacles: true, pins: true, contacts: false, shadows: true, follow: false, velocities: false, color: 'plain' };
 }

@@ -1,0 +1,239 @@
+// What a user changes and sees besides the run itself.
+import assert from 'node:assert/strict';
+import { copyFileSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import * as harness from './harness.mjs';
+
+async function openExample(name, options) {
+  const server = await harness.view(harness.example(name));
+  const page = await harness.openPage(server.address, options);
+  await harness.firstFrame(page);
+  await harness.pause(page);
+  return { server, page };
+}
+
+async function enter(field, value) {
+  await field.fill(String(value));
+  await field.press('Enter');
+}
+
+async function pinCount(page) {
+  return page.evaluate(() => window.sprung.runs[0].states.filter((state) => state & 2).length);
+}
+
+/** Pulls a particle upwards and pins it there. */
+async function pinByHand(page, body, particle) {
+  const at = await page.evaluate(([body, particle]) => window.sprung.project(body, particle), [body, particle]);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 20, at.y - 30, { steps: 3 });
+  await page.keyboard.down('Shift');
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+}
+
+test('the scale of colours follows values down, contains the limit, and is one for two runs', async () => {
+  const { page } = await openExample('hanging_cloth');
+  await harness.control(page, 'color').selectOption('speed');
+  await harness.control(page, 'speed').selectOption('0');
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.scale >= 0.5);
+  await harness.control(page, 'reset').click();
+  await harness.pause(page);
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.frame === 1 && window.sprung.scale <= 0.01);
+  await harness.control(page, 'color').selectOption('stretch');
+  await harness.drawn(page);
+  const limit = await page.evaluate(() => window.sprung.runs[0].scene.scene.stretch_limit.max_stretch);
+  assert.ok((await page.evaluate(() => window.sprung.scale)) >= limit);
+  await page.locator('#legend .limit').waitFor();
+  await harness.control(page, 'compare').selectOption('implicit_euler');
+  await harness.until(page, () => window.sprung.runs.length === 2);
+  await harness.drawn(page);
+  assert.equal(await page.locator('#legend .scale').count(), 1);
+  await harness.closePage(page);
+});
+
+test('a step that divides no frame is snapped with a sentence, and a smaller one applies live', async () => {
+  const { page } = await openExample('flag_in_gusts');
+  await harness.advance(page, 3);
+  await harness.control(page, 'unstable').check();
+  await harness.until(page, () => window.sprung.runs[0].scene.scene.stability === 'warn');
+  for (const [wish, count] of [[0.001, 33], [0.0005, 67], [0.05, 1]]) {
+    await enter(harness.control(page, 'step-size'), wish);
+    await harness.until(page, (count) => window.sprung.runs[0].scene.steps_per_frame === count, count);
+    assert.match(await page.locator('#settings .note:visible').innerText(), /does not divide a frame of 1\/30 s/);
+    assert.equal(await page.evaluate(() => window.sprung.runs[0].scene.live), true);
+    assert.ok((await page.evaluate(() => window.sprung.frame)) >= 4);
+  }
+  await harness.closePage(page);
+});
+
+test('a refused value shows the rule alone', async () => {
+  const { page } = await openExample('lab_rope');
+  await enter(harness.control(page, 'drag'), -1);
+  const problem = page.locator('#settings .problem:visible');
+  await problem.waitFor();
+  assert.doesNotMatch(await problem.innerText(), /json|--set|must be/);
+  await harness.closePage(page);
+});
+
+test('pins of the hand survive a reset, a restart and a comparison, and are in the copied scene', async () => {
+  const { page } = await openExample('hanging_cloth');
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.frame === 1);
+  const before = await pinCount(page);
+  await pinByHand(page, 'cloth', 500);
+  await harness.advance(page, 1);
+  assert.equal(await pinCount(page), before + 1);
+  const generation = await page.evaluate(() => window.sprung.runs[0].scene.generation);
+  await harness.control(page, 'reset').click();
+  await harness.until(page, (generation) => window.sprung.runs[0].scene.generation > generation, generation);
+  assert.equal(await pinCount(page), before + 1);
+  await harness.control(page, 'integrator').selectOption('symplectic_euler');
+  await harness.until(page, () => window.sprung.runs[0].scene.integrator === 'symplectic_euler');
+  assert.equal(await pinCount(page), before + 1);
+  await harness.control(page, 'compare').selectOption('verlet');
+  await harness.until(page, () => window.sprung.runs.length === 2);
+  const second = await page.evaluate(() => window.sprung.runs[1].states.filter((state) => state & 2).length);
+  assert.equal(second, before + 1);
+  const pins = await page.evaluate(() => window.sprung.runs[0].scene.changed.bodies.cloth.pins);
+  assert.equal(pins.at(-1).indices.length, 1);
+  await harness.closePage(page);
+});
+
+test('a scene that is saved in an editor begins anew, and mistakes show until they are mended', async () => {
+  const file = join(harness.scratchFolder(), 'scene.json');
+  copyFileSync(harness.example('lab_rope'), file);
+  const server = await harness.view(file);
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  const scene = JSON.parse(readFileSync(file, 'utf8'));
+  await harness.drawn(page);
+  await page.waitForTimeout(1000); // the program has looked at the file
+  writeFileSync(file, JSON.stringify({ ...scene, gravity: [0, -1, 0] }));
+  await harness.until(page, () => window.sprung.runs[0].scene.scene.gravity[1] === -1);
+  await page.getByText('has changed and begins anew').first().waitFor();
+  writeFileSync(file, JSON.stringify({ ...scene, gravitee: 1 }));
+  await page.getByText('gravitee').first().waitFor();
+  writeFileSync(file, JSON.stringify(scene));
+  await harness.until(page, () => window.sprung.runs[0].scene.scene.gravity[1] === -9.81 && window.sprung.problems.length === 0);
+  await page.getByText('gravitee').first().waitFor({ state: 'hidden' });
+  await harness.closePage(page);
+});
+
+test('the menu offers scenes alone, lessons with their text, and agrees with the title after a refusal', async () => {
+  const folder = harness.scratchFolder();
+  copyFileSync(harness.example('lab_rope'), join(folder, 'rope.json'));
+  copyFileSync(harness.example('too_large_step'), join(folder, 'refused.json'));
+  writeFileSync(join(folder, 'package.json'), '{"name": "no scene"}');
+  const server = await harness.view(join(folder, 'rope.json'));
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  const menu = harness.control(page, 'example');
+  assert.deepEqual(await menu.locator('option').evaluateAll((options) => options.map(({ value }) => value)), ['', 'refused', 'rope']);
+  assert.equal(await menu.inputValue(), 'rope');
+  await menu.selectOption('refused');
+  await harness.until(page, () => window.sprung.problems.length > 0);
+  assert.equal(await menu.inputValue(), 'rope');
+  await harness.closePage(page);
+  const { page: other } = await openExample('two_masses');
+  await harness.control(other, 'example').selectOption('lessons/3_damping');
+  await harness.control(other, 'lesson').getByText('3. Damping').waitFor();
+  await harness.closePage(other);
+});
+
+test('Space plays after a click on a control, presses one that was reached by Tab, and ? shows the keys', async () => {
+  const { page } = await openExample('lab_rope');
+  await harness.control(page, 'theme').click();
+  await page.keyboard.press(' ');
+  await harness.until(page, () => window.sprung.playing);
+  await page.keyboard.press('?');
+  await harness.control(page, 'keys-dialog').waitFor();
+  await page.keyboard.press('Escape');
+  await harness.control(page, 'keys-dialog').waitFor({ state: 'hidden' });
+  await harness.closePage(page);
+});
+
+test('the panel folds by its key and by itself on a small screen, where nothing is cut', async () => {
+  const { page } = await openExample('lab_rope');
+  const panel = page.locator('aside');
+  await panel.waitFor();
+  await page.keyboard.press('p');
+  await panel.waitFor({ state: 'hidden' });
+  await page.setViewportSize({ width: 1100, height: 600 });
+  for (const width of [800, 500, 320]) {
+    await page.setViewportSize({ width, height: 480 });
+    await harness.drawn(page);
+    const { header, scroll } = await page.evaluate(() => ({
+      header: [...document.querySelectorAll('header button')].filter((b) => b.offsetParent).map((b) => b.getBoundingClientRect().right),
+      scroll: document.documentElement.scrollWidth,
+    }));
+    assert.ok(Math.max(...header) <= width && scroll <= width, `${width} pixels: ${header}, ${scroll}`);
+    assert.ok((await page.locator('header').boundingBox()).height < 50);
+  }
+  await panel.waitFor({ state: 'hidden' });
+  await harness.closePage(page);
+});
+
+test('the picture is fitted again when the window changes, unless the user moved the camera', async () => {
+  const { page } = await openExample('lab_rope');
+  const middle = () => page.evaluate(() => window.sprung.project('rope', 0).x / document.querySelector('canvas').clientWidth);
+  const before = await page.evaluate(() => window.sprung.project('rope', 0));
+  await page.setViewportSize({ width: 700, height: 640 });
+  await harness.drawn(page);
+  const narrow = await page.evaluate(() => window.sprung.project('rope', 0));
+  assert.ok(narrow.x >= 0 && narrow.x <= 700 && (await middle()) < 1, JSON.stringify([before, narrow]));
+  await harness.control(page, 'panel-toggle').click();
+  await harness.control(page, 'top').click();
+  await harness.drawn(page);
+  await harness.closePage(page);
+});
+
+test('a click shows the numbers of a particle, a drag hides the hint and shows its force', async () => {
+  const { page } = await openExample('lab_rope');
+  await harness.control(page, 'hint').waitFor();
+  const at = await page.evaluate(() => window.sprung.project('rope', 5));
+  await page.mouse.click(at.x, at.y);
+  await harness.control(page, 'selection').getByText('position').waitFor();
+  const now = await page.evaluate(() => window.sprung.project('rope', 5));
+  await page.mouse.move(now.x, now.y);
+  await page.mouse.down();
+  await page.mouse.move(now.x + 60, now.y + 40, { steps: 3 });
+  await harness.control(page, 'hint').waitFor({ state: 'hidden' });
+  await harness.advance(page, 2);
+  await harness.control(page, 'pull-force').getByText(/\d N/).waitFor();
+  await page.mouse.up();
+  await harness.control(page, 'pull-force').waitFor({ state: 'hidden' });
+  await harness.closePage(page);
+});
+
+test('a program that has ended greys the controls, and an old address says so', async () => {
+  const file = harness.example('lab_rope');
+  const server = await harness.view(file, '--token', 'first');
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  await server.stop();
+  await harness.control(page, 'ended').getByText('The program has ended').waitFor();
+  assert.ok(await page.evaluate(() => document.querySelector('[data-testid=play]').closest('[inert]') !== null));
+  const again = await harness.view(file, '--token', 'second', '--port', server.port);
+  await harness.control(page, 'ended').getByText('open the new address').waitFor();
+  await again.stop();
+  await page.context().close(); // the browser itself prints that connections are refused
+});
+
+test('at most three curves are drawn until more are asked for, and a plot tells the value under the pointer', async () => {
+  const { page } = await openExample('lab_rope');
+  await harness.advance(page, 5);
+  const pressed = () => page.locator('[data-testid=energy] .plot-key[aria-pressed=true]').count();
+  assert.equal(await pressed(), 3);
+  await harness.control(page, 'energy-gravity').click();
+  assert.equal(await pressed(), 4);
+  const value = harness.control(page, 'energy').locator('output').first();
+  const last = await value.innerText();
+  const box = await harness.control(page, 'energy').locator('canvas').boundingBox();
+  await page.mouse.move(box.x + 42, box.y + 20);
+  await harness.until(page, (last) => document.querySelector('[data-testid=energy] output').textContent !== last, last);
+  await harness.closePage(page);
+});
