@@ -173,6 +173,9 @@ void LiveSession::obey(ClientId client, const PageCommand& command) {
     end_comparison();
   } else if (command.name() == "open") {
     open_example(client, command.text("example"));
+  } else if (command.name() == "scene") {
+    const Shown& shown = run_of(command);
+    publisher_->tell(client, changed_text(shown.number, shown.run));
   } else if (command.name() == "obj") {
     tell_obj(client, run_of(command), command.text("body"));
   } else {

@@ -1,4 +1,4 @@
-import type { Matrix4 } from 'three';
+import { Matrix4 } from 'three';
 import { byId } from './dom';
 
 const AXES = [
@@ -22,11 +22,15 @@ export class AxisCross {
     return { group, line, text };
   });
 
+  private readonly shown = new Matrix4();
+
   constructor() {
     byId('axes').append(...this.axes.map(({ group }) => group));
   }
 
   show(view: Matrix4): void {
+    if (view.equals(this.shown)) return;
+    this.shown.copy(view);
     const e = view.elements;
     this.axes.forEach(({ line, text }, k) => {
       const x = LENGTH * e[4 * k];

@@ -44,9 +44,15 @@ export class Dots {
 
   /** Shows the particles whose state has the bit. */
   chooseByState(states: Uint8Array, bit: number): void {
+    const { chosen } = this;
     let count = 0;
-    for (let i = 0; i < states.length; ++i) if (states[i] & bit) this.chosen[count++] = i;
-    this.show(count);
+    let changed = false;
+    for (let i = 0; i < states.length; ++i) {
+      if (!(states[i] & bit)) continue;
+      changed ||= chosen[count] !== i;
+      chosen[count++] = i;
+    }
+    if (changed || count !== this.points.geometry.drawRange.count) this.show(count);
   }
 
   chooseAll(): void {

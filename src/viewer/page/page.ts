@@ -3,13 +3,14 @@ import { Drag } from './drag';
 import { EmbeddedRun } from './embedded_run';
 import { History } from './history';
 import { integratorLabel } from './integrators';
+import { LiveHistory } from './live_history';
 import { Notices } from './notices';
 import { Plots } from './plots';
 import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SceneMessage, TextMessage, Topology } from './protocol';
 import type { Pick } from './picking';
 import { ReplayPlayer } from './replay_player';
 import { particleText, RunModel } from './run_model';
-import { copyScene, downloadText, objText, Recorder, savePicture } from './saving';
+import { copyScene, downloadText, objText, Recorder, savePicture, sceneText } from './saving';
 import { DIRECTIONS } from './scene_view';
 import type { SceneView } from './scene_view';
 import { Settings } from './settings';
@@ -43,6 +44,10 @@ export class Page implements SourceListener {
   private theme = LIGHT;
   private fitted = '';
   private plotted = { time: 0, stale: true };
+  private sceneWanted: ((scene: unknown) => void) | null = null;
+  private readonly past = new LiveHistory();
+  /** An earlier frame of a live run is shown. */
+  private looksBack = false;
   private selected: Pick | null = null;
   private errorUntil = 0;
   private frameCount = { since: 0, drawn: 0 };
@@ -134,6 +139,9 @@ export class Page implements SourceListener {
       downloadText(message.name, message.text);
     } else if (message.type === 'error' || message.type === 'notice') {
       this.showError(message.text);
+    } else if (message.type === 'changed') {
+      this.sceneWanted?.(message.changed);
+      this.sceneWanted = null;
     } else if (message.type === 'removed') {
       this.remove(message.run);
     }
@@ -150,8 +158,10 @@ export class Page implements SourceListener {
   }
 
   frame(header: Header, frame: Frame): void {
-    if (this.recorded) this.player.receive(header, frame);
-    else this.showFrame(header, frame);
+    if (this.recorded) return this.player.receive(header, frame);
+    this.past.add(header, frame);
+    this.looksBack = false;
+    this.showFrame(header, frame);
   }
 
   private get recorded(): boolean {
@@ -303,9 +313,20 @@ export class Page implements SourceListener {
   }
 
   private seekTime(time: number): void {
-    if (!this.recorded) return;
     this.play(false);
-    this.player.seekTime(time);
+    if (this.recorded) this.player.seekTime(time);
+    else this.lookBack(time);
+  }
+
+  /** Shows a frame of the last seconds of a live run. The run itself stays where it is. */
+  private lookBack(time: number): void {
+    this.shown.models.forEach((model, run) => {
+      const found = this.past.at(run, time);
+      if (found?.header.generation === model.scene.generation) model.apply(found.header, found.frame);
+      this.looksBack = found !== null && found.header !== this.past.newest(run)?.header;
+    });
+    this.plotted.stale = true;
+    this.view.invalidate();
   }
 
   private singleFrame(): void {
@@ -324,7 +345,17 @@ export class Page implements SourceListener {
         this.showError('this browser cannot record WebM');
       }
     });
-    control('copy-scene').addEventListener('click', () => void copyScene(this.scenes.get(0)?.changed ?? {}));
+    control('copy-scene').addEventListener('click', () => this.askScene((scene) => void copyScene(scene)));
+    control('save-scene').addEventListener('click', () => {
+      this.askScene((scene) => downloadText(this.shown.title || 'scene.json', sceneText(scene)));
+    });
+  }
+
+  /** Gives `use` the scene with its changes. The program knows the pins that were set since it began. */
+  private askScene(use: (scene: unknown) => void): void {
+    if (this.recorded) return use(this.scenes.get(0)?.changed ?? {});
+    this.sceneWanted = use;
+    this.send({ do: 'scene', run: 0 });
   }
 
   private tick(now: number): void {
@@ -343,7 +374,7 @@ export class Page implements SourceListener {
     }
     if (!this.plotted.stale || now - this.plotted.time < PLOT_MS) return;
     this.plotted = { time: now, stale: false };
-    this.plots.draw(this.shown.models, this.recorded);
+    this.plots.draw(this.shown.models, this.recorded || this.looksBack);
     this.showReadout();
     this.showSelection();
   }
@@ -355,7 +386,8 @@ export class Page implements SourceListener {
     const rates = this.shown.models.map((each) => `${short(each.numbers?.realtime ?? 0, 2)}x`).join(' | ');
     control('realtime').textContent = this.recorded || !this.shown.playing ? '' : rates;
     const infeasible = numbers?.infeasible ? `, ${numbers.infeasible} infeasible` : '';
-    control('readout').textContent = `frame ${model.frame}, ${model.time.toFixed(3)} s${infeasible}`;
+    const past = this.looksBack ? ', earlier: play goes on from the end' : '';
+    control('readout').textContent = `frame ${model.frame}, ${model.time.toFixed(3)} s${infeasible}${past}`;
   }
 
   /** Why there is no program to talk to; empty if there is one. */

@@ -117,13 +117,17 @@ class Plot {
     }).observe(canvas);
     canvas.addEventListener('pointermove', (event) => {
       this.pointer = event.offsetX;
+      if (event.buttons === 1) seek(this.timeAt(event.offsetX));
       changed();
     });
     canvas.addEventListener('pointerleave', () => {
       this.pointer = null;
       changed();
     });
-    canvas.addEventListener('click', (event) => seek(this.timeAt(event.offsetX)));
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      seek(this.timeAt(event.offsetX));
+    });
   }
 
   draw(runs: PlottedRun[], marked: boolean, inks: Inks): void {

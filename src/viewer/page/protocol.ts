@@ -48,6 +48,7 @@ export interface DivergedMessage {
   stable_step: number | null;
 }
 export interface ObjMessage { type: 'obj'; name: string; text: string }
+export interface ChangedMessage { type: 'changed'; run: number; changed: Json }
 export interface NoticeMessage { type: 'notice'; text: string }
 export interface ErrorMessage { type: 'error'; text: string }
 export interface RemovedMessage { type: 'removed'; run: number }
@@ -58,6 +59,7 @@ export type TextMessage =
   | StateMessage
   | DivergedMessage
   | ObjMessage
+  | ChangedMessage
   | NoticeMessage
   | ErrorMessage
   | RemovedMessage;
@@ -72,6 +74,7 @@ export type Command =
   | { do: 'grab' | 'release'; run: number; particle: number }
   | { do: 'drag'; target: [number, number, number] }
   | { do: 'drop'; pin: boolean }
+  | { do: 'scene'; run: number }
   | { do: 'obj'; run: number; body: string }
   | { do: 'seek'; frame: number };
 

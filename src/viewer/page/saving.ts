@@ -64,9 +64,14 @@ export function objText(model: RunModel, bodyName: string): string {
   return `${lines.join('\n')}\n`;
 }
 
+/** The scene as JSON text. */
+export function sceneText(scene: unknown): string {
+  return `${JSON.stringify(scene, null, 2)}\n`;
+}
+
 /** Where the clipboard is not allowed, the text is shown to be copied by hand. */
 export async function copyScene(scene: unknown): Promise<void> {
-  const text = `${JSON.stringify(scene, null, 2)}\n`;
+  const text = sceneText(scene);
   const button = control('copy-scene');
   try {
     await navigator.clipboard.writeText(text);

@@ -2,6 +2,7 @@ import { element, short } from './dom';
 import { CheckField, NumberField, SelectField, valueAt, VectorField } from './fields';
 import type { Change, Field, NumberSpec, SceneJson } from './fields';
 import { INTEGRATORS } from './integrators';
+import { materialsFor } from './materials';
 import type { Json, ProblemsMessage, SceneMessage } from './protocol';
 
 const KINDS = ['structural', 'shear', 'bend'] as const;
@@ -97,6 +98,14 @@ export class Settings {
     const key = `bodies.${name}`;
     const has = (own: string) => valueAt(scene, ['bodies', name, own]) !== undefined;
     const number = (spec: NumberSpec) => new NumberField(spec, this.change);
+    const material = valueAt(scene, ['bodies', name, 'material']);
+    if (typeof material === 'string') {
+      const shape = valueAt(scene, ['bodies', name, 'shape', 'type']);
+      const options = materialsFor(String(shape), material).map((value) => ({ value, label: value.replaceAll('_', ' ') }));
+      const read = (from: SceneJson) => String(valueAt(from, ['bodies', name, 'material']));
+      const choose = (value: string) => this.change(`${key}.material`, value);
+      fields.push(new SelectField('material', `material-${name}`, `${key}.material`, options, read, choose));
+    }
     if (has('mass')) fields.push(number({ ...plain('mass [kg]', `mass-${name}`, `${key}.mass`), restarts: true }));
     if (has('density')) fields.push(number({ ...plain('density', `density-${name}`, `${key}.density`), restarts: true }));
     fields.push(...bodySpecs(name, scene).map(number));
@@ -132,18 +141,23 @@ function divisorNear(wish: number, frameRate: number): { value: number; note: st
 function bodySpecs(name: string, scene: SceneJson): NumberSpec[] {
   const own = object(valueAt(scene, ['bodies', name, 'springs']));
   const specs = KINDS.filter((kind) => own[kind] !== undefined && own[kind] !== null).flatMap((kind) => [
-    springSpec(name, kind, scene, 'modulus', 'stiffness'),
-    springSpec(name, kind, scene, 'damping_ratio', 'damping'),
+    springSpec(name, kind, scene, 'stiffness', ['modulus']),
+    springSpec(name, kind, scene, 'damping', ['damping_time', 'damping_ratio']),
   ]);
   return [...specs, plain('friction', `friction-${name}`, `bodies.${name}.friction`)];
 }
 
-/** A spring has either of two keys: the one of the scene is shown. */
-function springSpec(name: string, kind: string, scene: SceneJson, either: string, or: string): NumberSpec {
+const UNITS: Record<string, string> = { stiffness: 'N/m', damping: 'N s/m', damping_time: 's', damping_ratio: '1' };
+
+/** A spring has one of several keys: the one of the scene is shown. */
+function springSpec(name: string, kind: string, scene: SceneJson, usual: string, others: string[]): NumberSpec {
   const path = ['bodies', name, 'springs', kind];
-  const key = valueAt(scene, [...path, either]) === undefined ? or : either;
+  const key = others.find((each) => valueAt(scene, [...path, each]) !== undefined) ?? usual;
+  // The unit of a modulus, and of bends by angle, depends on the shape.
+  const byAngle = valueAt(scene, [...path, 'model']) === 'angle' && key === usual;
+  const unit = UNITS[key] && !byAngle ? ` [${UNITS[key]}]` : '';
   return {
-    ...plain(`${kind} ${key.replace('_', ' ')}`, `${or}-${name}-${kind}`, [...path, key].join('.')),
+    ...plain(`${kind} ${key.replace('_', ' ')}${unit}`, `${usual}-${name}-${kind}`, [...path, key].join('.')),
     placeholder: 'none',
   };
 }

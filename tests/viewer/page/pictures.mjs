@@ -5,23 +5,26 @@ import * as harness from './harness.mjs';
 
 const folder = process.env.SPRUNG_PICTURES;
 const viewport = { width: 1120, height: 700 };
+/** Who makes pictures knows that there is something to drag. */
+const before = () => localStorage.setItem('sprung-dragged', '');
+/** After so long a pause [ms] the page tells no rate of frames, which is that of this machine. */
+const still = 2500;
 
 test('live', async () => {
   const server = await harness.view(harness.example('cloth_on_bunny'));
-  const page = await harness.openPage(server.address, { viewport });
+  const page = await harness.openPage(server.address, { viewport, before });
   await harness.firstFrame(page);
-  await harness.control(page, 'color').selectOption('stretch');
   await harness.play(page);
-  await harness.until(page, () => window.sprung.frame >= 60);
+  await harness.until(page, () => window.sprung.frame >= 22);
   await harness.pause(page);
-  await page.waitForTimeout(1000);
+  await page.waitForTimeout(still);
   await page.screenshot({ path: join(folder, 'view_live.png') });
   await harness.closePage(page);
 });
 
 test('two integrators', async () => {
   const server = await harness.view(harness.example('six_schemes'));
-  const page = await harness.openPage(server.address, { viewport });
+  const page = await harness.openPage(server.address, { viewport, before });
   await harness.firstFrame(page);
   await harness.pause(page);
   await harness.control(page, 'integrator').selectOption('explicit_euler');
@@ -32,7 +35,7 @@ test('two integrators', async () => {
   await harness.until(page, () => window.sprung.time >= 0.5);
   await harness.pause(page);
   await harness.control(page, 'fit').click();
-  await page.waitForTimeout(1000);
+  await page.waitForTimeout(still);
   await page.screenshot({ path: join(folder, 'view_two.png') });
   await harness.closePage(page);
 });
