@@ -133,7 +133,10 @@ bool LiveRun::continue_with(const PreparedScene& changed, const std::vector<std:
     simulator.set_air(built.settings.air_drag, built.settings.wind);
   } else if (!all_change([](const auto& names) { return names[0] == "obstacles"; })) {
     const bool steps_change = std::ranges::any_of(overrides, [](const std::string& change) { return key_of(change) == "step"; });
-    if (steps_change) finish_frame();
+    if (steps_change) {
+      drop(false);  // the force of the hand is stable for the step that it was made for
+      finish_frame();
+    }
     simulator.continue_with(built.network, steps_change ? built.settings : with_steps_of(simulator.settings(), built.settings));
   }
   for (std::size_t k = 0; k < built.obstacles.size(); ++k) {
@@ -168,16 +171,27 @@ void LiveRun::begin_anew(LoadedScene loaded) {
   pulled_ = kNone;
   infeasible_ = 0;
   loaded_.simulator.stop_when(stops_);
+  restore_pins();
+}
+
+/// A pin that the changed scene cannot do without stays.
+void LiveRun::restore_pins() {
   for (const Index i : pinned_) loaded_.simulator.pin(i);
-  for (const Index i : released_) release(i);
+  std::erase_if(released_, [&](Index i) {
+    try {
+      loaded_.simulator.release(i);
+      return false;
+    } catch (const InputError&) {
+      return true;
+    }
+  });
 }
 
 void LiveRun::keep_pins(const LiveRun& other) {
   if (!have_same_bodies(simulator().network(), other.simulator().network())) return;
   pinned_ = other.pinned_;
   released_ = other.released_;
-  for (const Index i : pinned_) loaded_.simulator.pin(i);
-  for (const Index i : released_) release(i);
+  restore_pins();
 }
 
 void LiveRun::reset() { begin_anew(load_scene(source_)); }

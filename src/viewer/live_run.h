@@ -63,6 +63,7 @@ class LiveRun {
  private:
   bool continue_with(const PreparedScene& changed, const std::vector<std::string>& overrides);
   void begin_anew(LoadedScene loaded);
+  void restore_pins();
   void finish_frame();
   [[nodiscard]] bool may_change(Index particle) const;
 

@@ -12,6 +12,7 @@
 #include <array>
 #include <chrono>
 #include <future>
+#include <thread>
 
 namespace sprung {
 namespace {
@@ -517,6 +518,64 @@ TEST_F(LiveViewer, ABusyPortIsNamedWithTheRemedy) {
     EXPECT_THAT(error.what(), HasSubstr("--port"));
     EXPECT_THAT(error.what(), HasSubstr(server_->port()));
   }
+}
+
+TEST_F(LiveViewer, PinsOfTheHandStayThroughResetsAndRestarts) {
+  LiveRun run({.file = folder_.write("scene.json", kScene).string()});
+  run.grab(5);
+  run.drop(true);
+  run.release(0);
+  const auto is_pinned = [](const LiveRun& of, Index i) { return of.simulator().state().activity.is_pinned(i); };
+  const auto expect_pins = [&](const LiveRun& of) {
+    EXPECT_TRUE(is_pinned(of, 5));
+    EXPECT_FALSE(is_pinned(of, 0));
+  };
+  expect_pins(run);
+  run.reset();
+  expect_pins(run);
+  EXPECT_FALSE(run.change({R"(integrator={"type":"symplectic_euler"})"}));
+  expect_pins(run);
+  LiveRun other({.file = (folder_.path() / "scene.json").string()});
+  other.keep_pins(run);
+  expect_pins(other);
+  EXPECT_EQ(Json::parse(run.changed_scene())["bodies"]["rope"]["pins"].back()["indices"], Json::array({5}));
+  EXPECT_FALSE(run.change({"bodies.rope.shape.particles=21"}));
+  EXPECT_FALSE(is_pinned(run, 5)) << "particles have other numbers";
+}
+
+TEST_F(LiveViewer, AStepChangesAtTheEndOfTheFrame) {
+  LiveRun run({.file = folder_.write("scene.json", kScene).string()});
+  for (int k = 0; k < 13; ++k) run.step();  // of 10 a frame
+  EXPECT_TRUE(run.change({"step=0.001"}));
+  EXPECT_EQ(run.simulator().settings().step, 0.001);
+  EXPECT_NEAR(run.simulator().time(), 0.04, 1.0e-12);
+  run.step();
+  EXPECT_NEAR(run.simulator().time(), 0.041, 1.0e-12);
+}
+
+TEST_F(LiveViewer, AFileThatChangesIsOpenedAgainAndItsMistakesAreTold) {
+  serve();
+  TestPage page(server_->port());
+  page.text("scene");
+  std::this_thread::sleep_for(std::chrono::seconds(1));  // the session has looked at the file
+  folder_.write("scene.json", R"({"version": 1, "duration": -1})");
+  EXPECT_EQ(page.text("problems")["problems"][0]["key"], "duration");
+  std::string changed = kScene;
+  changed.replace(changed.find("0.1,"), 4, "0.2,");
+  folder_.write("scene.json", changed);
+  EXPECT_EQ(page.text("scene")["scene"]["bodies"]["rope"]["mass"], 0.2);
+  EXPECT_THAT(page.text("notice")["text"].get<std::string>(), HasSubstr("scene.json"));
+}
+
+TEST_F(LiveViewer, TheForceOfTheHandIsToldInNewtons) {
+  LiveRun run({.file = folder_.write("scene.json", kScene).string()});
+  EXPECT_EQ(run.numbers().pull, 0.0);
+  run.grab(10);
+  run.drag(run.simulator().positions().col(10) + Vector3(0.1, 0.0, 0.0));
+  // k = m / s^2 of the body's 0.1 kg and 0.1 s, less what the step takes.
+  EXPECT_NEAR(run.numbers().pull, 1.0, 0.5);
+  run.drop(false);
+  EXPECT_EQ(run.numbers().pull, 0.0);
 }
 
 }  // namespace
