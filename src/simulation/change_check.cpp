@@ -144,6 +144,37 @@ void check_move(const std::string& key, const RigidTransform& from, const RigidT
                     .remedy = "go there in " + format_number(std::ceil(distance / most - kRounding)) + " steps"});
 }
 
+void check_motion(const SpringNetwork& network, const SimulationState& state, const Points& positions, const Points& velocities) {
+  ProblemList problems;
+  const auto count = static_cast<Eigen::Index>(network.particle_count());
+  for (const auto& [key, points] : {std::pair("positions", &positions), {"velocities", &velocities}}) {
+    if (points->cols() == count) continue;
+    problems.add(key, counted(static_cast<std::size_t>(points->cols()), "column"), "must have one for each particle",
+                 "give " + std::to_string(count));
+  }
+  problems.throw_if_any();
+  const auto require = [&](const std::string& what, const Points& points, const auto& is_good, const std::string& rule,
+                           const std::string& remedy) {
+    for (const Body& body : network.bodies) {
+      problems.require_each(
+          static_cast<std::size_t>(body.particle_count),
+          [&](std::size_t k) { return is_good(body.first_particle + static_cast<Index>(k)); },
+          [&](std::size_t k) { return vector_text(points.col(body.first_particle + static_cast<Index>(k)), 6); },
+          {"bodies." + body.name + "." + what, rule, remedy});
+    }
+  };
+  require(
+      "particles", positions, [&](Index i) { return positions.col(i).allFinite(); }, "must be finite", "write finite positions");
+  require(
+      "velocities", velocities, [&](Index i) { return velocities.col(i).allFinite(); }, "must be finite",
+      "write finite velocities");
+  require(
+      "particles", positions,
+      [&](Index i) { return !network.is_pinned(i) || !positions.col(i).allFinite() || positions.col(i) == state.x.col(i); },
+      "is pinned and must stay where it is", "move its pin, or release it first");
+  problems.throw_if_any();
+}
+
 void check_particle(const SpringNetwork& network, Index particle) {
   check_entry("particles", "a particle", particle, network.particle_count());
 }

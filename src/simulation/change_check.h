@@ -32,6 +32,9 @@ void check_number(const std::string& key, double number, ProblemList& problems);
 void check_move(const std::string& key, const RigidTransform& from, const RigidTransform& to, double reach,
                 const SpringNetwork& network);
 
+/// Positions and velocities of all particles, 3 x n: as many columns as particles, finite, and pinned particles where they are.
+void check_motion(const SpringNetwork& network, const SimulationState& state, const Points& positions, const Points& velocities);
+
 /// The number of a particle.
 void check_particle(const SpringNetwork& network, Index particle);
 

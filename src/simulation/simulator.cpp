@@ -6,6 +6,7 @@
 #include "simulation/checkpoint.h"
 #include "simulation/reaction_record.h"
 #include "simulation/settings/settings_check.h"
+#include "simulation/start/moved_check.h"
 #include "simulation/step/step_check.h"
 #include "simulation/stepper.h"
 
@@ -303,6 +304,15 @@ void Simulator::set_obstacle_material(std::size_t obstacle, const ContactMateria
   implementation_->control = std::move(control);
   implementation_->scratch->obstacles.set_material(static_cast<Index>(obstacle), material);
   implementation_->stepper().wake_all();
+}
+
+void Simulator::set_motion(const Points& positions, const Points& velocities) {
+  check_motion(network(), state(), positions, velocities);
+  const bool moves = positions != state().x;
+  if (!moves && velocities == state().v) return;
+  if (moves) check_moved(network(), obstacle_frame(), settings().contact, state().x, positions);
+  implementation_->wake();
+  implementation_->stepper().set_motion(positions, velocities);
 }
 
 std::size_t Simulator::pin(Index particle) {

@@ -146,6 +146,12 @@ class Simulator {
   /// a few steps. If the pin always holds, the spectral bounds are computed again.
   void release(Index particle);
 
+  /// Continues from other positions [m] and velocities [m/s] of all particles, 3 x n. Pinned particles must stay where they are and
+  /// keep the velocities of their pins. No particle may pass through an obstacle on the straight path to its new position, and
+  /// bodies may intersect nothing there that they do not intersect already. Wakes all particles. Does nothing if no number
+  /// differs. Costs as much as a step, and as much as the check of a start if a position differs.
+  void set_motion(const Points& positions, const Points& velocities);
+
   // Steering. The next step moves a pin or an obstacle to a pose, on a line and with the shortest rotation; its velocity follows.
   // It then stays there, whatever keyframes it had, until it is moved again. Call it before each step. A step may move no point
   // farther than the size of the largest body: contact is found up to that distance, and no body is stretched to more than twice

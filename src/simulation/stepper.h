@@ -56,6 +56,9 @@ class Stepper {
   /// Adopts a state from another model of the same particles, or from another control. Records energies anew.
   void adopt(const BeforeTransition& before, const Model& former);
 
+  /// Continues from other positions and velocities; those of pinned particles stay. Requires that all particles are awake.
+  void set_motion(const Points& positions, const Points& velocities);
+
   void wake_all();
   /// Wakes the groups near moving pins and obstacles.
   void wake_driven();

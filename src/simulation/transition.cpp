@@ -187,6 +187,33 @@ void Stepper::restore(const SimulationState& former) {
   initialize();
 }
 
+void Stepper::set_motion(const Points& positions, const Points& velocities) {
+  SimulationState changed = state_;
+  bool moves = false;
+  for (Index i = 0; i < network().particle_count(); ++i) {
+    if (network().is_pinned(i)) continue;
+    changed.v.col(i) = velocities.col(i);
+    integrator().velocity_changed(changed, i, dt());
+    if (positions.col(i) == state_.x.col(i)) continue;
+    moves = true;
+    changed.x.col(i) = positions.col(i);
+    changed.x_previous.col(i) += positions.col(i) - state_.x.col(i);
+    if (changed.contact.slip.obstacle.empty()) continue;
+    changed.contact.slip.displacement.col(i).setZero();
+    changed.contact.slip.obstacle[i] = kNone;
+  }
+  if (moves) {
+    changed.contact.pushed.clear();
+    changed.contact.normals.clear();
+    restore(changed);  // safe regions and pairs are those of the former positions
+  } else {
+    state_ = changed;
+    if (is_start()) resume_integrator(dt());
+  }
+  wake_all();
+  note_change();
+}
+
 void Stepper::initialize() {
   work().pin_paths.register_pins(state_);
   load();
