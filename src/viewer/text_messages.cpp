@@ -5,10 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <variant>
 
 namespace sprung {
 namespace {
@@ -88,6 +90,31 @@ std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live
                   {"masses", masses_of(loaded.simulator.network())},
                   {"bodies", bodies_of(loaded.simulator.network())},
                   {"obstacles", obstacles_of(loaded.simulator)}});
+}
+
+std::string watched_text(std::uint32_t generation, const std::string& title, const Simulator& simulator) {
+  constexpr std::array<const char*, std::variant_size_v<IntegratorSettings>> kIntegrators{
+      "explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "runge_kutta_4", "implicit_euler"};
+  const SimulatorSettings& settings = simulator.settings();
+  return text_of({{"type", "scene"},
+                  {"run", 0},
+                  {"generation", generation},
+                  {"title", title},
+                  {"lesson", ""},
+                  {"integrator", kIntegrators[settings.integrator.index()]},
+                  {"step", settings.step},
+                  {"steps_per_frame", settings.steps_per_frame},
+                  {"frame_rate", 1.0 / (settings.step * settings.steps_per_frame)},
+                  {"frames", 1},
+                  {"largest_stable_step", Json()},
+                  {"live", generation > 1},
+                  {"complete", true},
+                  {"scene", Json::object()},
+                  {"changed", Json::object()},
+                  {"warnings", simulator.warnings()},
+                  {"masses", masses_of(simulator.network())},
+                  {"bodies", bodies_of(simulator.network())},
+                  {"obstacles", obstacles_of(simulator)}});
 }
 
 std::string state_text(const PlayState& state) {

@@ -18,6 +18,8 @@ struct PlayState {
 
 [[nodiscard]] std::string hello_text(const std::string& mode, const std::string& title, const std::vector<std::string>& examples);
 [[nodiscard]] std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live, const LiveRun& run);
+/// The scene of a simulator that a program steps. Its JSON text is not known.
+[[nodiscard]] std::string watched_text(std::uint32_t generation, const std::string& title, const Simulator& simulator);
 [[nodiscard]] std::string state_text(const PlayState& state);
 /// Without a run there is none to show.
 [[nodiscard]] std::string problems_text(std::optional<std::uint32_t> run, const std::string& key,

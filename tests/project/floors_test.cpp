@@ -19,7 +19,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const std::map<std::string, int> kFloors = {{"base", 0},       {"geometry", 1}, {"network", 2}, {"collision", 2}, {"dynamics", 3},
-                                            {"simulation", 4}, {"output", 5},   {"scene", 6},   {"viewer", 7},    {"app", 8}};
+                                            {"simulation", 4}, {"output", 5},   {"scene", 6},   {"viewer", 7},    {"app", 8},
+                                            {"python", 8}};
 
 /// What the sub-folders of a folder may include of it, the lowest first. Files that stand in the folder itself are on top, and may
 /// include all of it, unless the folder has an entry here: "" names them among what others may include.
@@ -101,6 +102,7 @@ const std::vector<Library> kLibraries = {
     {"tiny_gltf.h", {"output"}, true},
     {"CLI/", {"app"}},
     {"fmt/", {"app"}},
+    {"pybind11/", {"python"}},
     {"sanitizer/", {"base"}},
     {"xmmintrin.h", {"base"}},
     {"fcntl.h", {"app", "base", "output"}},

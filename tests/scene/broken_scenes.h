@@ -213,6 +213,7 @@ inline const std::vector<BrokenScene>& broken_scenes() {
       {"SphereAroundANumber", {"bodies.banner.pins=[{\"sphere\":[1,2]}]"}, "bodies.banner.pins[0].sphere[0]", "must be a list of 3 entries"},
       {"GroupOfACloth", {"bodies.banner.pins=[{\"group\":\"hem\"}]"}, "bodies.banner.pins[0].group", "needs a mesh: other shapes have no groups; select particles by at, indices", false},
       {"GroupWithoutAName", {"bodies.banner.shape={\"type\":\"mesh\",\"file\":\"a.obj\"}", "bodies.banner.pins=[{\"group\":\"\"}]"}, "bodies.banner.pins[0].group", "must not be empty"},
+      {"PinWithACommaInItsName", {"bodies.banner.pins[0].name=\"left, right\""}, "bodies.banner.pins[0].name", "may have at most 200 letters, digits, _ and -; choose another name"},
       {"PinThatFollowsNothing", {"bodies.banner.pins[0].follow=flor"}, "bodies.banner.pins[0].follow", "must be the name of an obstacle; did you mean \"floor\"?", false},
       {"PinThatFollowsWithoutObstacles", {"obstacles={}", "bodies.banner.pins[0].follow=hand"}, "bodies.banner.pins[0].follow", "must be the name of an obstacle; the scene has none", false},
       {"PinThatFollowsAndMoves", {"bodies.banner.pins[0].follow=floor", "bodies.banner.pins[0].motion={}"}, "bodies.banner.pins[0]", "may have only one of follow, motion"},

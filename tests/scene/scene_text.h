@@ -117,7 +117,7 @@ inline constexpr const char* kFullScene = R"({
                 { "box": [[-1, 1, -1], [1, 3, 1]], "motion": { "spin": [0, 90, 0] } },
                 { "indices": [3, 5], "motion": { "keyframes": [ { "time": 0 }, { "time": 1, "position": [0, 1, 0] } ],
                                                  "interpolation": "smooth" } },
-                { "sphere": [[0, 1, 0], 0.25], "follow": "ball", "from": 0.5, "until": 2 } ],
+                { "sphere": [[0, 1, 0], 0.25], "name": "hand", "follow": "ball", "from": 0.5, "until": 2 } ],
       "point_masses": [ { "at": "corner", "which": ["max_max"], "mass": 0.75 }, { "indices": [1], "mass": 0.1 },
                         { "nearest": [0, 2, 0], "mass": 0.2 }, { "box": [[-1, 1, -1], [1, 3, 1]], "mass": 0.3 },
                         { "sphere": [[1, 2, 3], 4], "mass": 0.4 } ],

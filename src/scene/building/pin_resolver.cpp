@@ -74,7 +74,7 @@ std::vector<Pin> resolve_pins(const Scene& scene, const BodyScene& body, const B
             .obstacle = number_of_obstacle(scene, text.follow),
             .from = text.from,
             .until = text.until,
-            .name = body.name + "." + entry_key("pins", p)};
+            .name = text.name.empty() ? body.name + "." + entry_key("pins", p) : text.name};
     comparison.add(pin);
     if (rests_for_ever(pin)) {
       std::ranges::sort(pin.particles);

@@ -81,6 +81,7 @@ struct GroupSelector {
 using Selector = std::variant<CornersSelector, IndicesSelector, NearestSelector, BoxSelector, SphereSelector, GroupSelector>;
 
 struct PinScene {
+  std::string name{};  ///< empty: none
   Selector where;
   Motion motion{};
   std::string follow{};  ///< name of the obstacle that the particles follow instead of `motion`; empty: none

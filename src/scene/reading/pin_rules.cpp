@@ -5,6 +5,12 @@ namespace {
 
 PinScene read_pin(Fields& fields, const NamedParts& parts) {
   PinScene pin;
+  if (const auto name = fields.optional("name", text())) {
+    pin.name = *name;
+    if (!is_name(*name)) {
+      fields.location().at("name").report(Json(*name), "may have at most 200 letters, digits, _ and -", "choose another name");
+    }
+  }
   if (auto where = read_selector(fields, parts)) pin.where = std::move(*where);
   const auto follow = fields.optional("follow", text());
   pin.follow = follow.value_or("");

@@ -13,13 +13,6 @@ namespace {
 // File systems limit names to 255 bytes, including the number of a frame and the extension.
 constexpr std::size_t kLongestName = 200;
 
-bool is_name(const std::string& name) {
-  const auto allowed = [](unsigned char letter) {
-    return (letter < 128 && std::isalnum(letter)) || letter == '_' || letter == '-';
-  };
-  return !name.empty() && name.size() <= kLongestName && std::all_of(name.begin(), name.end(), allowed);
-}
-
 void check_name(const std::string& name, const JsonLocation& location) {
   if (name == "obstacles") location.report_key("the name is reserved for the folder of the obstacles", "choose another name");
   if (is_name(name)) return;
@@ -150,6 +143,13 @@ Scene read_scene_fields(Fields& fields) {
 }
 
 }  // namespace
+
+bool is_name(const std::string& name) {
+  const auto allowed = [](unsigned char letter) {
+    return (letter < 128 && std::isalnum(letter)) || letter == '_' || letter == '-';
+  };
+  return !name.empty() && name.size() <= kLongestName && std::all_of(name.begin(), name.end(), allowed);
+}
 
 Rule<Scene> scene_rule() { return object_of<Scene>(read_scene_fields); }
 

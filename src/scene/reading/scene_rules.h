@@ -42,6 +42,9 @@ void read_times(Fields& fields, double& from, double& until);
 /// reported elsewhere.
 [[nodiscard]] Rule<std::string> name_of(const Json& entries, const std::string& entry);
 
+/// Whether a name has 1 to 200 letters, digits, _ and -.
+[[nodiscard]] bool is_name(const std::string& name);
+
 /// Pins and point masses of a body.
 [[nodiscard]] Rule<PinScene> pin_rule(const NamedParts& parts);
 [[nodiscard]] Rule<PointMassScene> point_mass_rule(const NamedParts& parts);

@@ -142,6 +142,8 @@ TEST(SceneReader, PinsArrive) {
   EXPECT_EQ(pins[3].until, std::numeric_limits<double>::infinity());
   EXPECT_EQ(std::get<SphereSelector>(pins[4].where).centre, Vector3(0, 1, 0));
   EXPECT_EQ(std::get<SphereSelector>(pins[4].where).radius, 0.25);
+  EXPECT_EQ(pins[3].name, "");
+  EXPECT_EQ(pins[4].name, "hand");
   EXPECT_EQ(pins[4].follow, "ball");
   EXPECT_EQ(pins[4].from, 0.5);
   EXPECT_EQ(pins[4].until, 2.0);

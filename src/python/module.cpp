@@ -1,0 +1,18 @@
+// The extension module sprung._core; sprung/__init__.py shows what programs use of it.
+#include "python/bindings.h"
+#include "python/errors.h"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_core, module) {
+  py::options options;
+  options.disable_function_signatures();
+  module.doc() = "The compiled part of sprung.";
+  module.attr("version") = SPRUNG_VERSION;
+  sprung::python::register_errors();
+  sprung::python::bind_parts(module);
+  sprung::python::bind_simulator(module);
+  sprung::python::bind_scene(module);
+  sprung::python::bind_builder(module);
+  sprung::python::bind_show(module);
+}

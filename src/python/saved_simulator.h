@@ -1,0 +1,26 @@
+// Simulators in files: a checkpoint, and the scene that it belongs to.
+#pragma once
+
+#include "python/scripted_simulator.h"
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace sprung::python {
+
+/// Writes a checkpoint with the scene and the changes of the simulator.
+void save(ScriptedSimulator& simulator, const std::filesystem::path& file);
+
+/// Continues a simulator of the same scene from a checkpoint.
+void load_state(ScriptedSimulator& simulator, const std::filesystem::path& file);
+
+/// A simulator as save() wrote it. `forces` are the functions that it had added, in order.
+[[nodiscard]] std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file,
+                                                         const std::vector<pybind11::function>& forces);
+
+/// Adds a force of a Python function: of one body, or of all particles if there is none.
+void add_force(const std::shared_ptr<ScriptedSimulator>& simulator, const pybind11::function& function,
+               const pybind11::object& body);
+
+}  // namespace sprung::python

@@ -1,0 +1,14 @@
+// What a page shows of a simulator.
+#pragma once
+
+#include "simulation/simulator.h"
+#include "viewer/message.h"
+
+namespace sprung {
+
+[[nodiscard]] Topology topology_of(const Simulator& simulator);
+[[nodiscard]] FrameState state_of(const Simulator& simulator);
+/// All but the times and the particles without an admissible position.
+[[nodiscard]] FrameNumbers numbers_of(const Simulator& simulator);
+
+}  // namespace sprung
