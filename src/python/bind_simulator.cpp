@@ -4,6 +4,7 @@
 #include "python/batch.h"
 #include "python/bindings.h"
 #include "python/errors.h"
+#include "python/fast_step.h"
 #include "python/parts.h"
 #include "python/saved_simulator.h"
 #include "simulation/checkpoint.h"
@@ -225,11 +226,6 @@ implicit_euler. Raises InputError for a step that is too large.
 Steps run without the interpreter's lock, so several threads may step several simulators. A simulator that is stepping is
 refused to other threads.)");
   simulator
-      .def("step", &ScriptedSimulator::step, py::arg("steps") = 1, R"(step(steps=1)
-
-Make so many steps. Raises StepError if the simulation diverged; the simulator then is at the begin of that step. Raises
-InputError if arrays hold what the simulator refuses. Ctrl-C raises KeyboardInterrupt at the begin of a step; the simulator can go
-on.)")
       .def(
           "frame", [](ScriptedSimulator& self) { return diagnostics_table(self.frame()); }, R"(frame()
 
@@ -317,6 +313,7 @@ Raises FileError; a former file then stays.)")
 
 Continue from a saved simulator of the same scene or network. Raises FileError or InputError; nothing has changed then.)")
       .def("__repr__", &text_of);
+  add_step(simulator);
   bind_batch(module);
 }
 

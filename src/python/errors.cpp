@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
+#include <utility>
 
 namespace py = pybind11;
 
@@ -40,6 +41,12 @@ void translate(std::exception_ptr thrown) try {
 }
 
 }  // namespace
+
+void set_error(std::exception_ptr thrown) try { translate(std::move(thrown)); } catch (py::error_already_set& error) {
+  error.restore();
+} catch (const std::exception& error) {
+  PyErr_SetString(PyExc_RuntimeError, error.what());
+}
 
 void register_errors() { py::register_exception_translator(&translate); }
 

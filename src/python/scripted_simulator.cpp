@@ -15,6 +15,10 @@ namespace {
 // Often enough for a person who presses Ctrl-C; to ask takes the interpreter's lock.
 constexpr std::int64_t kSignalInterval = 50;  // [ms]
 
+// Short steps do not look at the clock each time.
+constexpr int kCallsPerLook = 4;
+constexpr std::int64_t kSlow = 20;  // [ms] between two looks
+
 /// [ms], of a clock that takes a few nanoseconds to read and ticks every few milliseconds.
 std::int64_t coarse_now() {
   timespec now{};
@@ -105,7 +109,10 @@ void ScriptedSimulator::publish() {
 bool ScriptedSimulator::is_interrupted() {
   if (batch_stopped_ != nullptr) return *batch_stopped_;
   if (signal_) return true;
+  if (--until_clock_ > 0) return false;
   const std::int64_t now = coarse_now();
+  until_clock_ = now - looked_ < kSlow ? kCallsPerLook : 1;
+  looked_ = now;
   if (now - asked_ < kSignalInterval) return false;
   asked_ = now;
   const py::gil_scoped_acquire lock;

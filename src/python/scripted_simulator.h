@@ -122,7 +122,9 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
   Points v_{3, 0};
   std::atomic<bool> in_use_ = false;
   const std::atomic<bool>* batch_stopped_ = nullptr;
-  std::int64_t asked_ = 0;  ///< for signals [ms]
+  std::int64_t asked_ = 0;   ///< for signals [ms]
+  std::int64_t looked_ = 0;  ///< at the clock [ms]
+  int until_clock_ = 0;      ///< calls
   std::optional<pybind11::error_already_set> signal_;
 };
 

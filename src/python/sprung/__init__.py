@@ -25,9 +25,9 @@ from ._errors import FileError, InputError, Problem, SprungWarning, StepError
 from ._scene import load
 
 __all__ = [
-    "Batch", "Body", "BodyShape", "FileError", "InputError", "Network", "NetworkBuilder", "Obstacle", "ObstacleShape", "Pin", "Problem",
-    "Scene", "Simulator", "Springs", "SprungWarning", "State", "StepError", "Viewer", "load", "make_box", "make_cloth", "make_ground", "make_rope",
-    "make_solid", "make_sphere", "restore", "show",
+    "Batch", "Body", "BodyShape", "FileError", "InputError", "Network", "NetworkBuilder", "Obstacle", "ObstacleShape", "Pin",
+    "Problem", "Scene", "Simulator", "Springs", "SprungWarning", "State", "StepError", "Viewer", "load", "make_box",
+    "make_cloth", "make_ground", "make_rope", "make_solid", "make_sphere", "restore", "show",
 ]
 
 for _name in __all__:

@@ -8,7 +8,11 @@ from ._errors import FileError as FileError, InputError as InputError, Problem a
 from ._errors import StepError as StepError
 
 __version__: str
-__all__: List[str]
+__all__ = [
+    "Batch", "Body", "BodyShape", "FileError", "InputError", "Network", "NetworkBuilder", "Obstacle", "ObstacleShape", "Pin",
+    "Problem", "Scene", "Simulator", "Springs", "SprungWarning", "State", "StepError", "Viewer", "load", "make_box",
+    "make_cloth", "make_ground", "make_rope", "make_solid", "make_sphere", "restore", "show",
+]
 
 _Path = Union[str, "os.PathLike[str]"]
 _Floats = numpy.typing.NDArray[numpy.float64]
