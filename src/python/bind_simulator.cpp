@@ -46,12 +46,7 @@ py::array diagnostics_table(const FrameDiagnostics& d) {
                       count("limit_solves", d.limit_solves), number("frame_ms", d.frame_ms)});
 }
 
-py::array diagnostics(ScriptedSimulator& simulator) {
-  Simulator& measured = const_cast<Simulator&>(simulator.read());  // FrameRunner only reads it in first_frame()
-  FrameDiagnostics now = FrameRunner(measured).first_frame();
-  now.frame = static_cast<int>(measured.state().frame) + 1;
-  return diagnostics_table(now);
-}
+py::array diagnostics(ScriptedSimulator& simulator) { return diagnostics_table(present_diagnostics(simulator.read())); }
 
 /// The obstacle that a contact is with; kNone: between bodies.
 Index touched_obstacle(const ObstacleFrame& obstacles, const ContactNormal& touching, double thickness, const Vector3& position) {

@@ -27,22 +27,6 @@ Index inverted_cells(const Simulator& simulator) {
   return count;
 }
 
-FrameDiagnostics measure(const Simulator& simulator, int frame) {
-  FrameDiagnostics diagnostics;
-  diagnostics.frame = frame;
-  diagnostics.time = simulator.time();
-  diagnostics.kinetic_energy = kinetic_energy(simulator);
-  diagnostics.elastic_energy = simulator.elastic_energy();
-  diagnostics.gravity_energy = simulator.gravity_energy();
-  diagnostics.contact_energy = simulator.contact_energy();
-  diagnostics.max_stretch = max_stretch(simulator);
-  diagnostics.contacts = simulator.contact_count();
-  diagnostics.inverted_cells = inverted_cells(simulator);
-  diagnostics.min_distance = simulator.obstacle_frame().min_distance(contact_positions(simulator.network(), simulator.positions()),
-                                                                     distance_range(simulator));
-  return diagnostics;
-}
-
 }  // namespace
 
 double kinetic_energy(const Simulator& simulator) {
@@ -61,9 +45,25 @@ double max_stretch(const Simulator& simulator) {
   return most;
 }
 
+FrameDiagnostics present_diagnostics(const Simulator& simulator) {
+  FrameDiagnostics diagnostics;
+  diagnostics.frame = static_cast<int>(simulator.state().frame) + 1;
+  diagnostics.time = simulator.time();
+  diagnostics.kinetic_energy = kinetic_energy(simulator);
+  diagnostics.elastic_energy = simulator.elastic_energy();
+  diagnostics.gravity_energy = simulator.gravity_energy();
+  diagnostics.contact_energy = simulator.contact_energy();
+  diagnostics.max_stretch = max_stretch(simulator);
+  diagnostics.contacts = simulator.contact_count();
+  diagnostics.inverted_cells = inverted_cells(simulator);
+  diagnostics.min_distance = simulator.obstacle_frame().min_distance(contact_positions(simulator.network(), simulator.positions()),
+                                                                     distance_range(simulator));
+  return diagnostics;
+}
+
 FrameRunner::FrameRunner(Simulator& simulator) : simulator_(simulator) {}
 
-FrameDiagnostics FrameRunner::first_frame() const { return measure(simulator_, 1); }
+FrameDiagnostics FrameRunner::first_frame() const { return present_diagnostics(simulator_); }
 
 FrameDiagnostics FrameRunner::next_frame() {
   const auto begin = std::chrono::steady_clock::now();
@@ -80,7 +80,7 @@ FrameDiagnostics FrameRunner::next_frame() {
   simulator_.check();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
 
-  FrameDiagnostics diagnostics = measure(simulator_, static_cast<int>(simulator_.state().frame) + 1);
+  FrameDiagnostics diagnostics = present_diagnostics(simulator_);
   diagnostics.stretch_excess = all.stretch_excess;
   diagnostics.truncated = all.truncated;
   diagnostics.infeasible = all.infeasible;
