@@ -18,9 +18,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const std::map<std::string, int> kFloors = {{"base", 0},       {"geometry", 1}, {"network", 2}, {"collision", 2}, {"dynamics", 3},
-                                            {"simulation", 4}, {"output", 5},   {"scene", 6},   {"viewer", 7},    {"app", 8},
-                                            {"python", 8}};
+const std::map<std::string, int> kFloors = {{"base", 0},     {"geometry", 1},   {"network", 2}, {"collision", 2},
+                                            {"dynamics", 3}, {"simulation", 4}, {"output", 5},  {"scene", 6},
+                                            {"viewer", 7},   {"app", 8},        {"python", 8}};
 
 /// What the sub-folders of a folder may include of it, the lowest first. Files that stand in the folder itself are on top, and may
 /// include all of it, unless the folder has an entry here: "" names them among what others may include.
