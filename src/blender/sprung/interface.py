@@ -288,7 +288,7 @@ class SPRUNG_PT_scene(bpy.types.Panel):
         layout.prop(settings, "push_out")
         layout.prop(settings, "folder")
         if settings.folder.startswith("//") and not bpy.data.filepath:
-            layout.label(text="Save the file to keep the frames: now they are temporary", icon="INFO")
+            layout.label(text="Unsaved file: the frames are temporary", icon="INFO")
 
     def draw_run(self, layout, scene):
         settings = scene.sprung
