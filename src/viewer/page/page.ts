@@ -438,6 +438,6 @@ export class Page implements SourceListener {
     this.status.dataset.state = this.shown.connected ? 'connected' : 'disconnected';
     // A screen reader speaks each text that is set.
     if (this.status.textContent !== state) this.status.textContent = state;
-    control('fps').textContent = this.shown.connected && this.shown.fps > 0 ? `${Math.round(this.shown.fps)} frames/s` : '';
+    control('fps').textContent = this.shown.connected && this.shown.fps >= 0.5 ? `${Math.round(this.shown.fps)} frames/s` : '';
   }
 }
