@@ -21,6 +21,13 @@ export const DIRECTIONS = {
   top: new Vector3(0, 1, 1e-3).normalize(),
 };
 
+/** Whether a program draws in place of a graphics card: shadows then take longer than all else. */
+function drawsWithoutGpu(renderer: WebGLRenderer): boolean {
+  const gl = renderer.getContext();
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  return info !== null && /swiftshader|llvmpipe|softpipe|basic render/i.test(String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)));
+}
+
 /** The picture: up to two runs, side by side, through one camera. */
 export class SceneView {
   readonly options: ViewOptions = defaultOptions();
@@ -45,6 +52,7 @@ export class SceneView {
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
+    this.options.shadows = !drawsWithoutGpu(this.renderer);
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.autoUpdate = false;
     this.renderer.toneMapping = NeutralToneMapping;
