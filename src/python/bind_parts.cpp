@@ -17,7 +17,7 @@ namespace py = pybind11;
 namespace sprung::python {
 namespace {
 
-py::object read_only(py::dict parts) { return py::module_::import("types").attr("MappingProxyType")(parts); }
+py::object read_only(const py::dict& parts) { return py::module_::import("types").attr("MappingProxyType")(parts); }
 
 const Body& body_of(const BodyPart& part) { return part.simulator->peek().network().bodies[part.number]; }
 

@@ -31,7 +31,7 @@ void raise(const StepError& error) {
 }
 
 void translate(std::exception_ptr thrown) try {
-  if (thrown) std::rethrow_exception(thrown);
+  if (thrown) std::rethrow_exception(std::move(thrown));
 } catch (const InputError& error) {
   raise(error);
 } catch (const StepError& error) {

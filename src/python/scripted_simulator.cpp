@@ -132,9 +132,7 @@ void ScriptedSimulator::run_steps(const Steps& steps) {
     steps(simulator);
   } catch (const StoppedError&) {
     if (!signal_) throw;
-    const py::error_already_set error = *signal_;
-    signal_.reset();
-    throw error;
+    throw py::error_already_set(*std::exchange(signal_, std::nullopt));
   }
 }
 
