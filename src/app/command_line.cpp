@@ -90,9 +90,9 @@ class Parser {
     run->add_option("--out", run_.out, "Folder for the frames; must be empty or not exist, unless the run is resumed")
         ->required()
         ->type_name("DIR");
-    run->add_option(
-           "--format", run_.formats,
-           "obj: OBJ sequences, the default; none: record.bin and diagnostics alone; or any of those of export, as obj,npz")
+    run->add_option("--format", run_.formats,
+                    "obj: OBJ sequences, the default; none: record.bin and diagnostics alone; or any of those of export, as "
+                    "obj,npz. With --resume: those of the run")
         ->delimiter(',')
         ->check(CLI::IsMember(run_formats()))
         ->type_name("FORMAT,...");

@@ -14,7 +14,7 @@ namespace sprung {
 struct RunOptions {
   SceneSource scene;
   std::string out;
-  std::vector<std::string> formats{"obj"};  ///< of the frames; none, alone: none
+  std::vector<std::string> formats;  ///< of the frames; none, alone: none; empty: obj, or those of the run that is resumed
   std::optional<int> frames;
   std::optional<int> threads;
   bool quiet = false;

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "output/exporters/exporter.h"
 #include "output/run_output.h"
+#include "output/run_summary.h"
 #include "scene/building/strength_scatter.h"
 
 #include <fmt/format.h>
@@ -17,42 +18,52 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace sprung {
 namespace {
 
-bool has_format(const RunOptions& options, const std::string& format) {
-  return std::ranges::find(options.formats, format) != options.formats.end();
+constexpr const char* kNoFormat = "none";
+constexpr const char* kHtml = "html";
+
+using Formats = std::vector<std::string>;
+
+bool has(const Formats& formats, const std::string& format) { return std::ranges::find(formats, format) != formats.end(); }
+
+/// As asked for; else those of the run that is resumed.
+Formats formats_of(const RunOptions& options) {
+  if (!options.formats.empty()) return options.formats;
+  const auto run = options.resume ? written_run(std::filesystem::path(options.out) / kRunSummaryFile) : std::nullopt;
+  if (!run) return {"obj"};
+  return run->formats.empty() ? Formats{kNoFormat} : run->formats;
 }
 
 /// Those that exporters make.
-std::vector<std::string> formats_of(const RunOptions& options) {
-  std::vector<std::string> formats;
-  for (const std::string& format : exporter_formats()) {
-    if (has_format(options, format)) formats.push_back(format);
-  }
-  return formats;
+Formats exporters_among(const Formats& formats) {
+  Formats made;
+  std::ranges::copy_if(exporter_formats(), std::back_inserter(made), [&](const auto& format) { return has(formats, format); });
+  return made;
 }
 
 /// Throws UsageError if they do not go together.
-void check_formats(const RunOptions& options, bool writes_record) {
-  if (has_format(options, "none") && options.formats.size() > 1) {
-    throw UsageError("--format none goes with no other format; leave it out");
-  }
+void check_formats(const Formats& formats, bool writes_record) {
+  if (has(formats, kNoFormat) && formats.size() > 1) throw UsageError("--format none goes with no other format; leave it out");
   if (writes_record) return;
-  if (has_format(options, "none")) {
+  if (has(formats, kNoFormat)) {
     throw UsageError("--format none with \"record\": false writes no frames; leave out one of them");
   }
-  for (const std::string& format : formats_of(options)) {
+  for (const std::string& format : exporters_among(formats)) {
     if (make_exporter(format, {})->writes_each_frame()) continue;
     throw UsageError(fmt::format("--format {} is made from record.bin at the end of the run; leave out \"record\": false", format));
   }
 }
 
-RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int threads) {
+RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, const Formats& formats, int threads) {
   BodyMaterials materials;
   for (const BodyScene& body : loaded.scene.bodies) {
     if (!body.preset.empty()) materials[body.name] = body.preset;
@@ -70,7 +81,8 @@ RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, int thre
           .scene_file = loaded.scene.file.filename().string(),
           .materials = std::move(materials),
           .write_record = loaded.scene.write_record,
-          .formats = formats_of(options),
+          .formats = exporters_among(formats),
+          .later_formats = has(formats, kHtml) ? Formats{kHtml} : Formats(),
           .checkpoint_interval = options.checkpoint};
 }
 
@@ -196,7 +208,8 @@ ExitCode run(const RunOptions& options) {
   const ThreadLimit limit(threads);
   LoadedScene loaded = load_scene(options.scene);
   loaded.frames = options.frames.value_or(loaded.frames);
-  check_formats(options, loaded.scene.write_record);
+  const Formats formats = formats_of(options);
+  check_formats(formats, loaded.scene.write_record);
   std::error_code ignored;
   if (!loaded.initial_state.empty() && std::filesystem::equivalent(loaded.initial_state, options.out, ignored)) {
     throw FileError("write into the folder", options.out, "the scene begins from the run in it; choose another folder");
@@ -204,7 +217,7 @@ ExitCode run(const RunOptions& options) {
   if (interrupted()) return ExitCode::interrupted;
 
   OutputFolder folder = options.resume ? OutputFolder::as_it_is(options.out) : OutputFolder(options.out, options.overwrite);
-  const RunFacts facts = facts_of(loaded, options, threads);
+  const RunFacts facts = facts_of(loaded, options, formats, threads);
   const ResumePoint point = options.resume ? find_resume_point(folder, facts, loaded.simulator) : ResumePoint();
   if (point.is_complete) {
     print_message(
@@ -232,7 +245,7 @@ ExitCode run(const RunOptions& options) {
   const std::string time = describe_duration(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
   const int written = output.frames_written();
-  if (has_format(options, "html") && written > 0) export_html(options.out, std::filesystem::path(options.out) / kAnimationFile);
+  if (has(formats, kHtml) && written > 0) export_html(options.out, std::filesystem::path(options.out) / kAnimationFile);
   if (written < loaded.frames) {
     print_message(fmt::format("interrupted; {} of {} frames are in {}{}", written, loaded.frames, options.out,
                               options.checkpoint > 0.0 ? "; --resume goes on" : ""));

@@ -30,10 +30,15 @@ Json json_of(const StepAdjustment& adjustment) {
           {"length", adjustment.length}};
 }
 
+/// The strings of an array; nothing if it is none or holds anything else.
+std::optional<std::vector<std::string>> strings_of(const Json& json, const char* key) {
+  const Json array = json.value(key, Json());
+  if (!array.is_array() || !std::ranges::all_of(array, [](const Json& each) { return each.is_string(); })) return std::nullopt;
+  return array.get<std::vector<std::string>>();
+}
+
 bool is_run_summary(const Json& json) {
-  if (!json.is_object() || json.value("program", Json()) != kProgram || !json.contains("files")) return false;
-  const Json& files = json["files"];
-  return files.is_array() && std::all_of(files.begin(), files.end(), [](const Json& file) { return file.is_string(); });
+  return json.is_object() && json.value("program", Json()) == kProgram && strings_of(json, "files");
 }
 
 /// Lists the files of exports. Returns whether any was not listed before.
@@ -85,9 +90,11 @@ RunSummary::RunSummary(const RunFacts& facts, double step, const std::vector<std
                      {"step_adjustments", Json::array()},
                      {"warnings", Json::array()},
                      {"record", Json()},
+                     {"formats", facts.formats},
                      {"files", files},
                      {"exports", Json::array()},
                      {"scene", facts.scene.empty() ? Json() : Json::parse(facts.scene)}};
+  for (const std::string& format : facts.later_formats) document_->json["formats"].push_back(format);
   document_->warnings = facts.warnings;
   for (const StepAdjustment& adjustment : facts.adjustments) document_->json["step_adjustments"].push_back(json_of(adjustment));
 }
@@ -143,7 +150,8 @@ std::optional<WrittenRun> written_run(const std::filesystem::path& run_summary) 
   return WrittenRun{.outcome = outcome.is_string() ? outcome.get<std::string>() : std::string(),
                     .frames_written = frames.is_number_integer() ? frames.get<int>() : 0,
                     .scene = scene.is_object() ? scene.dump() : std::string(),
-                    .files = json["files"].get<std::vector<std::string>>()};
+                    .files = json["files"].get<std::vector<std::string>>(),
+                    .formats = strings_of(json, "formats").value_or(std::vector<std::string>{"obj"})};
 }
 
 void add_files_to_run(const std::filesystem::path& folder, const std::vector<std::string>& patterns) {

@@ -34,12 +34,13 @@ struct RunFacts {
   std::optional<std::uint64_t> seed{};  ///< of the scene; none if nothing uses it
   std::vector<StepAdjustment> adjustments{};
   std::vector<std::string> warnings{};
-  ObjSources sources{};                     ///< of bodies that are written as their files are
-  std::string scene_file{};                 ///< name of the scene's file, without its folders; empty if there is none
-  BodyMaterials materials{};                ///< of bodies that have one
-  bool write_record = true;                 ///< whether record.bin is written
-  std::vector<std::string> formats{"obj"};  ///< of the frames, names of exporter_formats()
-  double checkpoint_interval = 0.0;         ///< at most so often a checkpoint is written [s], wall time; 0: never
+  ObjSources sources{};                      ///< of bodies that are written as their files are
+  std::string scene_file{};                  ///< name of the scene's file, without its folders; empty if there is none
+  BodyMaterials materials{};                 ///< of bodies that have one
+  bool write_record = true;                  ///< whether record.bin is written
+  std::vector<std::string> formats{"obj"};   ///< of the frames, names of exporter_formats()
+  std::vector<std::string> later_formats{};  ///< further ones, which the caller makes of the run when it has ended
+  double checkpoint_interval = 0.0;          ///< at most so often a checkpoint is written [s], wall time; 0: never
 };
 
 /// A body whose stretch limit was handed over from Gauss-Seidel passes to Newton.
@@ -106,8 +107,9 @@ class RunSummary {
 struct WrittenRun {
   std::string outcome;
   int frames_written = 0;
-  std::string scene;               ///< JSON text; empty if the run has none
-  std::vector<std::string> files;  ///< patterns
+  std::string scene;                 ///< JSON text; empty if the run has none
+  std::vector<std::string> files;    ///< patterns
+  std::vector<std::string> formats;  ///< `formats` and `later_formats` of its facts
 };
 
 /// Nothing if the file cannot be read or is not a run.json of Sprung.

@@ -409,6 +409,20 @@ TEST_F(Resume, OtherFormatsAreRefused) {
   expect_refusal(resume(scene, {"--format", "none"}), "other names.*--format");
 }
 
+TEST_F(Resume, WritesTheFormatsOfTheRun) {
+  const std::string scene = save(long_rope_scene());
+  for (const char* format : {"none", "ply,npz,html"}) {
+    std::filesystem::remove_all(folder());
+    std::filesystem::remove_all(folder("whole"));
+    run_until(3, scene, {"--format", format});
+    EXPECT_EQ(resume(scene).code, 0);
+    undisturbed(scene, {"--format", format});
+    // An animation shows wall times, so that its bytes differ.
+    EXPECT_EQ(std::filesystem::remove(folder() / "animation.html"), std::filesystem::remove(folder("whole") / "animation.html"));
+    expect_same(folder(), folder("whole"));
+  }
+}
+
 TEST_F(Resume, ASecondRunOfTheFolderNamesTheFirst) {
   json scene = rope_scene();
   scene["duration"] = 100.0;
