@@ -18,6 +18,7 @@ write() {
     "$SPRUNG_PROGRAM" run "$file" --frames $frames --out "$SPRUNG_OUT/$scene/run" --format $formats --quiet 2> /dev/null
     "$SPRUNG_PROGRAM" run "$file" --frames $frames --out "$SPRUNG_OUT/$scene/record" --format none --quiet 2> /dev/null
     "$SPRUNG_PROGRAM" export "$SPRUNG_OUT/$scene/record" --out "$SPRUNG_OUT/$scene/export" --format $formats 2> /dev/null
+    "$SPRUNG_PROGRAM" export "$SPRUNG_OUT/$scene/record" --out "$SPRUNG_OUT/$scene/run/doubles" --format npz64 2> /dev/null
     (cd "$SPRUNG_OUT/$scene/export" && find . -type f | sort) | while read -r name; do
       cmp "$SPRUNG_OUT/$scene/run/$name" "$SPRUNG_OUT/$scene/export/$name"
     done

@@ -60,6 +60,16 @@ def faces_of(record, body):
     return [vertex[a:b] for a, b in zip(begin[:-1], begin[1:])]
 
 
+def uv_of_fans(record, body):
+    """u, v of the corners of triangles: f x 3 x 2. Nothing if the body has none."""
+    corners = record.array(f"bodies/{body}/texcoord")[:, 0]
+    if corners.size == 0:
+        return None
+    uv = numpy.vstack([record.array(f"bodies/{body}/texcoords").reshape(-1, 2), [0.0, 0.0]])[corners]
+    begin = record.array(f"bodies/{body}/corner_begin")[:, 0]
+    return numpy.array([uv[[a, k, k + 1]] for a, b in zip(begin[:-1], begin[1:]) for k in range(a + 1, b - 1)])
+
+
 def fans(faces):
     return numpy.array([[f[0], f[k], f[k + 1]] for f in faces for k in range(1, len(f) - 1)], int).reshape(-1, 3)
 
@@ -79,14 +89,20 @@ def read_cache(path, frames, points):
 def check(run, exports):
     record = Record(run)
     arrays = numpy.load(f"{exports}/animation.npz")
+    doubles = numpy.load(f"{exports}/doubles/animation.npz")
     frames = range(1, record.frames + 1)
     close(arrays["time"], [record.frame_array("time", f)[0, 0] for f in frames], "time", 0.0)
     for b, body in enumerate(record.bodies):
         name = body["name"]
         wanted = numpy.array([record.vertices(b, f) for f in frames])
         close(arrays[f"{name}/positions"], wanted, f"{name} in NPZ")
+        close(doubles[f"{name}/positions"], wanted, f"{name} in NPZ of doubles", 0.0)
         faces = faces_of(record, b)
         assert (arrays[f"{name}/faces"] == fans(faces)).all()
+        uv = uv_of_fans(record, b)
+        assert (uv is None) == (f"{name}/uv" not in arrays)
+        if uv is not None:
+            close(arrays[f"{name}/uv"], uv, f"UVs of {name} in NPZ")
         assert (arrays[f"{name}/edges"] == record.array(f"bodies/{b}/lines")).all()
         for ending in ("pc2", "mdd"):
             close(read_cache(f"{exports}/{name}.{ending}", record.frames, wanted.shape[1]), wanted, f"{name} in {ending}")
@@ -116,7 +132,8 @@ def check(run, exports):
             close(own @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3], wanted, f"{name} in NPZ", 4 * FLOAT)
         else:
             close(arrays[f"obstacles/{name}/positions"], wanted, f"{name} in NPZ")
-        close(read_cache(f"{exports}/obstacles/{name}.pc2", record.frames, wanted.shape[1]), wanted, f"{name} in pc2")
+        for ending in ("pc2", "mdd"):
+            close(read_cache(f"{exports}/obstacles/{name}.{ending}", record.frames, wanted.shape[1]), wanted, f"{name} in {ending}")
     print(f"{len(record.bodies)} bodies, {len(record.obstacles)} obstacles, {record.frames} frames: equal")
 
 
