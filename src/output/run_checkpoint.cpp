@@ -165,19 +165,22 @@ void expect_same(const OutputFolder& folder, const RunIdentity& before, const Ru
 
 }  // namespace
 
+std::map<std::string, std::uint64_t> fingerprints_of(const Model& model) {
+  std::map<std::string, std::uint64_t> fingerprints;
+  for (const Body& body : model.network().bodies) fingerprints["body \"" + body.name + "\""] = fingerprint_of_body(model, body);
+  for (const Obstacle& obstacle : model.obstacles().obstacles()) {
+    fingerprints["obstacle \"" + obstacle.name + "\""] = fingerprint_of_shape(obstacle);
+  }
+  return fingerprints;
+}
+
 RunIdentity identity_of(const std::string& scene, const Simulator& simulator) {
-  RunIdentity identity;
-  if (!scene.empty()) add_keys(Json::parse(scene), "", identity.keys);
-  const SpringNetwork& network = simulator.model()->network();
-  const std::vector<Obstacle>& obstacles = simulator.model()->obstacles().obstacles();
-  if (!scene.empty()) identity.keys["the order of bodies"] = names_in_order(network.bodies);
-  if (!scene.empty()) identity.keys["the order of obstacles"] = names_in_order(obstacles);
-  for (const Body& body : network.bodies) {
-    identity.fingerprints["body \"" + body.name + "\""] = fingerprint_of_body(*simulator.model(), body);
-  }
-  for (const Obstacle& obstacle : obstacles) {
-    identity.fingerprints["obstacle \"" + obstacle.name + "\""] = fingerprint_of_shape(obstacle);
-  }
+  const Model& model = *simulator.model();
+  RunIdentity identity{.keys = {}, .fingerprints = fingerprints_of(model)};
+  if (scene.empty()) return identity;
+  add_keys(Json::parse(scene), "", identity.keys);
+  identity.keys["the order of bodies"] = names_in_order(model.network().bodies);
+  identity.keys["the order of obstacles"] = names_in_order(model.obstacles().obstacles());
   return identity;
 }
 

@@ -14,6 +14,7 @@
 
 namespace sprung {
 
+class Model;
 class Simulator;
 
 /// What must be the same if a run goes on: the scene without its duration and the paths of files, and what was read from these.
@@ -34,6 +35,10 @@ struct RunCheckpoint {
 
 /// The simulator is at the start. Requires that `scene` is JSON text or empty.
 [[nodiscard]] RunIdentity identity_of(const std::string& scene, const Simulator& simulator);
+
+/// The fingerprint of each body with its start, `body "rope"`, and of each obstacle's mesh, `obstacle "bunny"`. Costs a hash of
+/// all.
+[[nodiscard]] std::map<std::string, std::uint64_t> fingerprints_of(const Model& model);
 
 /// Where a run goes on.
 struct ResumePoint {

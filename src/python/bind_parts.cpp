@@ -42,8 +42,8 @@ void write(const BodyPart& part, Points& points, const std::string& what, const 
 const ObjSource* source_of(const BodyPart& part) {
   const auto& origin = part.simulator->origin();
   if (!origin) return nullptr;
-  const auto found = origin->sources.find(body_of(part).name);
-  return found == origin->sources.end() || found->second->particle_of.empty() ? nullptr : found->second.get();
+  const auto found = origin->bodies.find(body_of(part).name);
+  return found == origin->bodies.end() || found->second->particle_of.empty() ? nullptr : found->second.get();
 }
 
 /// The particle of each vertex of the body's frames, in the numbering of the body.

@@ -1,7 +1,7 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/saved_simulator.h"
-#include "scene/load_scene.h"
+#include "python/scene_origin.h"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -15,7 +15,6 @@ namespace {
 
 /// A scene that was loaded: its simulator at time 0, of which each simulator is a copy.
 struct LoadedOrigin {
-  std::shared_ptr<const SceneOrigin> origin;
   std::shared_ptr<ScriptedSimulator> first;
   std::string resolved;
   int frames = 1;
@@ -53,23 +52,14 @@ LoadedOrigin load(const py::object& scene, const py::object& overrides, const st
   }
   for (const std::filesystem::path& folder : mesh_paths) source.mesh_paths.push_back(folder.string());
   source.text = scene_text(source);  // read once
-  std::optional<LoadedScene> loaded;
-  {
-    const py::gil_scoped_release release;
-    loaded.emplace(load_scene(source));
-  }
-  const auto origin = std::make_shared<const SceneOrigin>(SceneOrigin{.file = source.file,
-                                                                      .text = *source.text,
-                                                                      .overrides = source.overrides,
-                                                                      .mesh_paths = source.mesh_paths,
-                                                                      .sources = loaded->sources});
-  return {.origin = origin,
-          .first = std::make_shared<ScriptedSimulator>(std::move(loaded->simulator), origin),
-          .resolved = loaded->scene.resolved,
-          .frames = loaded->frames,
-          .frame_rate = loaded->scene.frame_rate,
-          .largest_stable_step = loaded->largest_stable_step,
-          .warnings = std::move(loaded->warnings)};
+  LoadedScene loaded = load_in_python(source);
+  const auto origin = origin_of(std::move(source), loaded);
+  return {.first = std::make_shared<ScriptedSimulator>(std::move(loaded.simulator), origin),
+          .resolved = loaded.scene.resolved,
+          .frames = loaded.frames,
+          .frame_rate = loaded.scene.frame_rate,
+          .largest_stable_step = loaded.largest_stable_step,
+          .warnings = std::move(loaded.warnings)};
 }
 
 }  // namespace
@@ -90,10 +80,14 @@ void bind_scene(py::module_& module) {
   module.def("load", &load, py::arg("scene"), py::kw_only(), py::arg("overrides") = py::none(),
              py::arg("mesh_paths") = std::vector<std::filesystem::path>());
   module.def("restore", &restore, py::arg("path"), py::kw_only(), py::arg("forces") = std::vector<py::function>(),
-             R"(restore(path, *, forces=())
+             py::arg("mesh_paths") = std::vector<std::filesystem::path>(), R"(restore(path, *, forces=(), mesh_paths=())
 
-A simulator as Simulator.save(path) wrote it, which continues bit by bit. Meshes must still be where they were. forces: the
-functions that it had added with add_force(), of all particles, in order. Raises FileError or InputError.)");
+A simulator as Simulator.save(path) wrote it, which continues bit by bit. The file has the scene, but neither its meshes nor
+functions. Meshes must be where they were, or in one of the folders mesh_paths. forces: the functions that the simulator had
+added with add_force(), in order; each acts on the body that it acted on.
+
+Raises FileError if this is no such file, and InputError if a mesh is missing or has changed, if forces are missing, or if the
+simulator was made of a Network: then make the network again, and call Simulator.load(path).)");
 }
 
 }  // namespace sprung::python

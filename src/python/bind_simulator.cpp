@@ -302,8 +302,9 @@ costs next to nothing: the first of both that steps then pays for the copy, as m
           "__deepcopy__", [](ScriptedSimulator& self, const py::dict& /*memo*/) { return self.copy(); }, py::arg("memo"))
       .def("save", &save, py::arg("path"), R"(save(path)
 
-Write a file from which sprung.restore(path) continues bit by bit, with the scene. Meshes and added forces are not in the file.
-Raises FileError; a former file then stays.)")
+Write a file from which sprung.restore(path) continues bit by bit: the state, the scene with its overrides, and changes of gravity
+and springs. Meshes, added forces and the network of a NetworkBuilder are not in the file. Raises FileError; a former file then
+stays.)")
       .def("load", &load_state, py::arg("path"), R"(load(path)
 
 Continue from a saved simulator of the same scene or network. Raises FileError or InputError; nothing has changed then.)")

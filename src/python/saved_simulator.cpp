@@ -1,17 +1,19 @@
 #include "python/saved_simulator.h"
 
+#include "base/format.h"
+#include "output/run_checkpoint.h"
 #include "python/arrays.h"
 #include "python/errors.h"
 #include "python/parts.h"
 #include "python/python_force.h"
-#include "scene/load_scene.h"
 #include "simulation/checkpoint.h"
 #include "simulation/model.h"
 
-#include <algorithm>
-#include <utility>
-
 #include <pybind11/stl.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
 
 namespace py = pybind11;
 
@@ -25,15 +27,44 @@ py::module_ json() { return py::module_::import("json"); }
 std::string scene_of(ScriptedSimulator& simulator) {
   py::dict saved;
   if (const auto& origin = simulator.origin()) {
-    saved["file"] = std::filesystem::absolute(origin->file).string();
-    saved["text"] = origin->text;
-    saved["overrides"] = origin->overrides;
-    std::vector<std::string> folders;
-    for (const std::string& folder : origin->mesh_paths) folders.push_back(std::filesystem::absolute(folder).string());
-    saved["mesh_paths"] = folders;
+    saved["file"] = origin->source.file;
+    saved["text"] = *origin->source.text;
+    saved["overrides"] = origin->source.overrides;
+    saved["mesh_paths"] = origin->source.mesh_paths;
+    saved["fingerprints"] = fingerprints_of(*origin->model);
   }
+  py::list bodies;
+  for (const auto& added : simulator.added_forces()) bodies.append(added.body);
+  saved["forces"] = bodies;
   saved["changes"] = simulator.changes();
   return kKind + json().attr("dumps")(saved).cast<std::string>();
+}
+
+/// Throws InputError that names each mesh that is another one than when the simulator was saved.
+void expect_same_meshes(const py::dict& saved, const Model& model) {
+  const auto before = saved["fingerprints"].cast<std::map<std::string, std::uint64_t>>();
+  std::vector<Problem> problems;
+  for (const auto& [name, fingerprint] : fingerprints_of(model)) {
+    if (before.at(name) == fingerprint) continue;
+    problems.push_back({.file = saved["file"].cast<std::string>(),
+                        .key = name,
+                        .rule = "its mesh, or the state in \"initial_state\", is another one than when the simulator was saved",
+                        .remedy = "put the former file back, or load the scene and begin anew"});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+/// Adds the functions, each to the body of the one that it stands for.
+void add_forces(const std::shared_ptr<ScriptedSimulator>& simulator, const std::vector<py::function>& forces,
+                const std::vector<std::string>& bodies) {
+  if (forces.size() != bodies.size()) {
+    refuse("forces", counted(forces.size(), "function"),
+           "must be the functions that the simulator had added, of which there were " + std::to_string(bodies.size()),
+           "give them in the same order: restore(path, forces=[...])");
+  }
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    add_force(simulator, forces[k], bodies[k].empty() ? py::object(py::none()) : py::str(bodies[k]));
+  }
 }
 
 void repeat_change(const std::shared_ptr<ScriptedSimulator>& simulator, const std::string& text) {
@@ -61,29 +92,31 @@ void load_state(ScriptedSimulator& simulator, const std::filesystem::path& file)
   simulator.change([&](Simulator& changed) { changed.restore(checkpoint); });
 }
 
-std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file, const std::vector<py::function>& forces) {
+std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file, const std::vector<py::function>& forces,
+                                           const std::vector<std::filesystem::path>& mesh_paths) {
   const Checkpoint checkpoint = read_checkpoint(file);
   if (!checkpoint.run.starts_with(kKind)) {
-    refuse(file.string(), "", "was not written by Simulator.save() of Python, so it has no scene",
-           "load the scene, make a simulator, and call its load(path)");
+    throw InputError({.file = file.string(),
+                      .rule = "was not written by Simulator.save() of Python, so it has no scene",
+                      .remedy = "load the scene, make a simulator, and call its load(path)"});
   }
   const auto saved = json().attr("loads")(checkpoint.run.substr(kKind.size())).cast<py::dict>();
   if (!saved.contains("text")) {
-    refuse(file.string(), "", "is of a simulator that was made without a scene",
-           "make the network again, and call load(path) of its simulator");
+    throw InputError({.file = file.string(),
+                      .rule = "is of a simulator that was made of a Network, which the file does not hold",
+                      .remedy = "make the network and its simulator again, and call load(path) of the simulator"});
   }
-  SceneOrigin origin{.file = saved["file"].cast<std::string>(),
-                     .text = saved["text"].cast<std::string>(),
+  SceneSource source{.file = saved["file"].cast<std::string>(),
                      .overrides = saved["overrides"].cast<std::vector<std::string>>(),
                      .mesh_paths = saved["mesh_paths"].cast<std::vector<std::string>>(),
-                     .sources = {}};
-  LoadedScene loaded =
-      load_scene({.file = origin.file, .overrides = origin.overrides, .mesh_paths = origin.mesh_paths, .text = origin.text});
-  origin.sources = loaded.sources;
-  auto restored =
-      std::make_shared<ScriptedSimulator>(std::move(loaded.simulator), std::make_shared<const SceneOrigin>(std::move(origin)));
+                     .text = saved["text"].cast<std::string>()};
+  for (const std::filesystem::path& folder : mesh_paths) source.mesh_paths.push_back(folder.string());
+  LoadedScene loaded = load_in_python(source);
+  expect_same_meshes(saved, *loaded.simulator.model());
+  const auto origin = origin_of(std::move(source), loaded);
+  auto restored = std::make_shared<ScriptedSimulator>(std::move(loaded.simulator), origin);
   for (const std::string& change : saved["changes"].cast<std::vector<std::string>>()) repeat_change(restored, change);
-  for (const py::function& function : forces) add_force(restored, function, py::none());
+  add_forces(restored, forces, saved["forces"].cast<std::vector<std::string>>());
   restored->change([&](Simulator& changed) { changed.restore(checkpoint); });
   return restored;
 }
@@ -91,15 +124,16 @@ std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file, co
 void add_force(const std::shared_ptr<ScriptedSimulator>& simulator, const py::function& function, const py::object& body) {
   const SpringNetwork& network = simulator->peek().network();
   PythonForce::Range range{.first = 0, .count = network.particle_count()};
+  std::string name;
   if (!body.is_none()) {
-    const auto name = py::str(body).cast<std::string>();
+    name = py::str(body).cast<std::string>();
     const auto its = std::ranges::find(network.bodies, name, &Body::name);
     if (its == network.bodies.end()) refuse("bodies." + name, "", "is no body of the simulator", "see simulator.bodies");
     range = {.first = its->first_particle, .count = its->particle_count};
   }
   const auto force = std::make_shared<PythonForce>(function, range, body.is_none());
   simulator->change([&](Simulator& changed) { changed.add_force(force); });
-  simulator->added_forces().push_back({force, function});
+  simulator->added_forces().push_back({force, function, name});
 }
 
 }  // namespace sprung::python

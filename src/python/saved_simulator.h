@@ -15,9 +15,11 @@ void save(ScriptedSimulator& simulator, const std::filesystem::path& file);
 /// Continues a simulator of the same scene from a checkpoint.
 void load_state(ScriptedSimulator& simulator, const std::filesystem::path& file);
 
-/// A simulator as save() wrote it. `forces` are the functions that it had added, in order.
+/// A simulator as save() wrote it. `forces` are the functions that it had added, in order; `mesh_paths` are further folders of
+/// meshes. Throws InputError if a mesh or a function is missing or another one, or if the simulator had no scene.
 [[nodiscard]] std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file,
-                                                         const std::vector<pybind11::function>& forces);
+                                                         const std::vector<pybind11::function>& forces,
+                                                         const std::vector<std::filesystem::path>& mesh_paths);
 
 /// Adds a force of a Python function: of one body, or of all particles if there is none.
 void add_force(const std::shared_ptr<ScriptedSimulator>& simulator, const pybind11::function& function,

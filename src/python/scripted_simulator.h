@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dynamics/forces/force.h"
-#include "geometry/obj_source/obj_source.h"
+#include "python/scene_origin.h"
 #include "simulation/diagnostics.h"
 #include "simulation/simulator.h"
 
@@ -17,15 +17,6 @@
 #include <vector>
 
 namespace sprung::python {
-
-/// The scene from which simulators are made. Never changes.
-struct SceneOrigin {
-  std::string file;                     ///< as given; relative to this meshes are found
-  std::string text;                     ///< JSON
-  std::vector<std::string> overrides;   ///< `key.path=json`
-  std::vector<std::string> mesh_paths;  ///< folders
-  ObjSources sources;                   ///< the files of bodies
-};
 
 /// All members need the interpreter's lock, which those that make steps give back meanwhile. While a thread uses the simulator, all
 /// others, and the forces that it calls, are refused.
@@ -73,6 +64,7 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
   [[nodiscard]] std::vector<Added>& added_forces() { return added_; }
 
   [[nodiscard]] const std::shared_ptr<const SceneOrigin>& origin() const { return origin_; }
+    std::string body;
 
   /// Changes since the scene was loaded that a checkpoint lacks, as JSON texts, in order.
   [[nodiscard]] std::vector<std::string>& changes() { return changes_; }

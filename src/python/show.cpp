@@ -48,8 +48,9 @@ class Viewer {
 };
 
 std::unique_ptr<Viewer> show(const std::shared_ptr<ScriptedSimulator>& simulator, bool open, int port) {
-  const std::string file = simulator->origin() ? simulator->origin()->file : "";
-  const std::string title = file.empty() || file == "<dict>" ? "sprung" : file.substr(file.rfind('/') + 1);
+  const std::string file = simulator->origin() ? simulator->origin()->source.file : "";
+  const std::string name = file.substr(file.rfind('/') + 1);
+  const std::string title = name.empty() || name == "<dict>" ? "sprung" : name;
   auto viewer = std::make_unique<Viewer>(simulator, title, port);
   if (open) py::module_::import("webbrowser").attr("open")(viewer->address());
   return viewer;

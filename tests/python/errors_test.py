@@ -35,8 +35,9 @@ class InputErrors(unittest.TestCase):
                 sprung.load({**cloth(), "duration": wrong})
         with self.assertRaises(sprung.InputError):
             sprung.load(cloth(), overrides={"duration": numpy.inf})
-        with self.assertRaises(sprung.InputError):
+        with self.assertRaises(sprung.InputError) as caught:
             sprung.load(cloth(), overrides={"bodies.cloth.colour": 1})
+        self.assertEqual(caught.exception.problems[0].file, "<dict>, changed by overrides")
 
     def test_a_missing_file_is_a_file_error(self):
         with self.assertRaises(sprung.FileError) as caught:

@@ -13,6 +13,7 @@ class Saved(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
+        self.folder = folder.name
         self.path = os.path.join(folder.name, "state.bin")
 
     def test_restore_continues_bit_by_bit(self):
@@ -48,12 +49,73 @@ class Saved(unittest.TestCase):
         one.add_force(force)
         one.step(10)
         one.save(self.path)
-        with self.assertRaises(sprung.InputError):
+        with self.assertRaises(sprung.InputError) as caught:
             sprung.restore(self.path)
+        self.assertIn("restore(path, forces=[...])", caught.exception.problems[0].remedy)
         twin = sprung.restore(self.path, forces=[force])
         for each in (one, twin):
             each.step(30)
         self.assertEqual(twin.state(), one.state())
+
+    def test_a_force_acts_on_its_body_again(self):
+        scene = rope()
+        scene["bodies"]["other"] = {**scene["bodies"]["rope"], "place": {"position": [0, 5, 0]}}
+        one = simulator(scene)
+
+        def lift(x, v, t):
+            return numpy.full((8, 3), 0.5)
+        one.add_force(lift, body="other")
+        one.step(10)
+        one.save(self.path)
+        twin = sprung.restore(self.path, forces=[lift])
+        for each in (one, twin):
+            each.step(30)
+        self.assertEqual(twin.state(), one.state())
+
+    def sheet(self, height):
+        """Of a mesh beside the saved file, by a relative path."""
+        with open(os.path.join(self.folder, "sheet.obj"), "w") as file:
+            file.write(f"v 0 0 0\nv 1 0 0\nv 0 {height} 0\nv 1 {height} 0\nf 1 2 4 3\n")
+        return {"duration": 1, "frame_rate": 50, "step": 0.001, "bodies": {"sheet": {
+            "shape": {"type": "mesh", "file": "sheet.obj"}, "mass": 1, "springs": {"structural": {"stiffness": 10}}}}}
+
+    def test_meshes_are_found_from_another_folder(self):
+        scene, here = self.sheet(1), os.getcwd()
+        os.chdir(self.folder)
+        try:
+            one = simulator(scene)
+        finally:
+            os.chdir(here)
+        one.step(20)
+        one.save(self.path)
+        twin = sprung.restore(self.path)
+        for each in (one, twin):
+            each.step(20)
+        self.assertEqual(twin.state(), one.state())
+        twin.save(self.path)  # again, as often as one likes
+        self.assertEqual(sprung.restore(self.path).state(), one.state())
+
+    def test_a_mesh_that_is_gone_is_named_and_may_be_elsewhere(self):
+        one = simulator(self.sheet(1), mesh_paths=[self.folder])
+        one.save(self.path)
+        elsewhere = os.path.join(self.folder, "elsewhere")
+        os.mkdir(elsewhere)
+        os.rename(os.path.join(self.folder, "sheet.obj"), os.path.join(elsewhere, "sheet.obj"))
+        with self.assertRaises(sprung.InputError) as caught:
+            sprung.restore(self.path)
+        self.assertEqual(caught.exception.problems[0].key, "bodies.sheet.shape.file")
+        self.assertIn("mesh_paths", caught.exception.problems[0].remedy)
+        self.assertEqual(sprung.restore(self.path, mesh_paths=[elsewhere]).state(), one.state())
+
+    def test_a_mesh_that_changed_is_named(self):
+        one = simulator(self.sheet(1), mesh_paths=[self.folder])
+        one.save(self.path)
+        self.sheet(2)
+        with self.assertRaises(sprung.InputError) as caught:
+            sprung.restore(self.path)
+        problem = caught.exception.problems[0]
+        self.assertEqual(problem.key, 'body "sheet"')
+        self.assertIn("another one than when the simulator was saved", problem.rule)
 
     def test_a_simulator_of_a_network_loads_its_state(self):
         def make():
