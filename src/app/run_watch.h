@@ -1,9 +1,8 @@
 // Warnings about a run, while it proceeds and at its end.
 #pragma once
 
-#include "dynamics/tethers/lra_paths.h"
 #include "output/run_output.h"
-#include "simulation/diagnostics.h"
+#include "simulation/frame_watch.h"
 #include "simulation/monitoring/energy_watch.h"
 
 #include <cstdint>
@@ -14,19 +13,10 @@ namespace sprung {
 
 /// What RunWatch remembers of the frames so far.
 struct RunWatchMemory {
-  struct Missed {
-    int frames = 0;
-    double largest = 0.0;  ///< fraction of a rest length
-    int worst_frame = 0;
-    PinStretch pins{};  ///< in that frame
-  };
-
   bool infeasible = false;
   bool inverted = false;
-  Missed missed{};
+  FrameMemory frames{};
   EnergyGainMemory energy{};
-  int frames = 0;
-  int truncated_frames = 0;         ///< frames in which truncation stopped many particles
   std::vector<char> handed_over{};  ///< by body
   std::int64_t last_break = 0;      ///< number of the step after which a rod or spring broke last
 };
@@ -56,14 +46,9 @@ class RunWatch {
  private:
   void note_infeasible(const FrameDiagnostics& frame);
   void note_inverted(const FrameDiagnostics& frame);
-  void note_stretch(const FrameDiagnostics& frame);
   void note_handovers();
   void note_broken(const FrameDiagnostics& frame);
-  void note_truncated(const FrameDiagnostics& frame);
-  void warn_of_missed_limit();
-  void warn_of_thin_bodies();
   void warn_of_self_crossings();
-  [[nodiscard]] std::string remedy_for_stretch() const;
 
   const Simulator& simulator_;
   RunOutput& output_;

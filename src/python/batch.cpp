@@ -98,6 +98,11 @@ void Batch::frame() {
 }
 
 void Batch::run(const std::vector<std::int64_t>& steps) {
+  step_all(steps);
+  for (const auto& simulator : simulators_) simulator->warn();
+}
+
+void Batch::step_all(const std::vector<std::int64_t>& steps) {
   struct Begun {
     std::vector<ScriptedSimulator*> simulators;
     ~Begun() {

@@ -25,6 +25,7 @@ class Batch {
 
  private:
   void run(const std::vector<std::int64_t>& steps);
+  void step_all(const std::vector<std::int64_t>& steps);
 
   std::vector<std::shared_ptr<ScriptedSimulator>> simulators_;
 };

@@ -260,9 +260,7 @@ void bind_builder(py::module_& module) {
                    settings.sleep = sleep;
                    auto simulator =
                        std::make_shared<ScriptedSimulator>(Simulator(network, settings, std::move(obstacles)), nullptr);
-                   const py::object warn = py::module_::import("warnings").attr("warn");
-                   const py::object category = py::module_::import("sprung._errors").attr("SprungWarning");
-                   for (const std::string& text : simulator->peek().warnings()) warn(text, category);
+                   for (const std::string& text : simulator->peek().warnings()) warn(text);
                    return simulator;
                  }),
                  py::arg("network"), py::kw_only(), py::arg("step") = 0.001, py::arg("steps_per_frame") = 1,

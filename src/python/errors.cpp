@@ -50,6 +50,10 @@ void set_error(std::exception_ptr thrown) try { translate(std::move(thrown)); } 
 
 void register_errors() { py::register_exception_translator(&translate); }
 
+void warn(const std::string& text) {
+  if (PyErr_WarnEx(class_of("SprungWarning").ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 void refuse(const std::string& key, const std::string& value, const std::string& rule, const std::string& remedy) {
   throw InputError({.key = key, .value = value, .rule = rule, .remedy = remedy});
 }

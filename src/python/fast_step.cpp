@@ -44,7 +44,9 @@ constexpr const char* kDocumentation = R"(step($self, /, steps=1)
 --
 
 Make so many steps. Raises StepError if the simulation diverged; the simulator then is at the begin of that step. Raises InputError
-if arrays hold what the simulator refuses. Ctrl-C raises KeyboardInterrupt at the begin of a step; the simulator can go on.)";
+if arrays hold what the simulator refuses. Ctrl-C raises KeyboardInterrupt at the begin of a step; the simulator can go on. Warns by
+SprungWarning, once for all simulators of a scene, of vertices without an admissible position, cells inside out, a missed stretch
+limit, and a thickness that is too small for the step.)";
 
 PyMethodDef method{"step", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&step)), METH_FASTCALL | METH_KEYWORDS,
                    kDocumentation};

@@ -55,10 +55,12 @@ ScriptedSimulator::ScriptedSimulator(Simulator simulator, std::shared_ptr<const 
 ScriptedSimulator::ScriptedSimulator(std::shared_ptr<Simulator> simulator, std::shared_ptr<const SceneOrigin> origin)
     : simulator_(std::move(simulator)), origin_(std::move(origin)) {}
 
-/// To change it. The interpreter's lock protects the number of owners; a simulator that another one owns too is never in use.
+/// To change it. Does not need the interpreter's lock: nobody changes a simulator that several own, and only the one that is in use
+/// could give its own to another.
 Simulator& ScriptedSimulator::own() {
   if (is_owned_) return *simulator_;
   if (simulator_.use_count() > 1) simulator_ = std::make_shared<Simulator>(*simulator_);
+  std::atomic_thread_fence(std::memory_order_acquire);  // after what a former owner read, in another thread
   simulator_->stop_when([this] { return is_interrupted(); });
   is_owned_ = true;
   return *simulator_;
@@ -141,24 +143,32 @@ void ScriptedSimulator::step(std::int64_t steps) {
   run_steps([&](Simulator& simulator) {
     for (std::int64_t k = 0; k < steps; ++k) {
       if (k > 0 && is_interrupted()) throw StoppedError();
-      simulator.step();
+      warnings_.note_step(simulator, simulator.step());
     }
   });
   if (show_) show_(*simulator_);
+  warn();
 }
 
 FrameDiagnostics ScriptedSimulator::frame() {
   FrameDiagnostics diagnostics;
-  run_steps([&](Simulator& simulator) { diagnostics = FrameRunner(simulator).next_frame(); });
+  run_steps([&](Simulator& simulator) {
+    diagnostics = FrameRunner(simulator).next_frame();
+    warnings_.note_frame(simulator, diagnostics);
+  });
   if (show_) show_(*simulator_);
+  warn();
   return diagnostics;
+}
+
+void ScriptedSimulator::warn() {
+  while (const auto text = warnings_.next()) python::warn(*text);
 }
 
 void ScriptedSimulator::begin_batch() {
   if (in_use_.exchange(true)) throw std::runtime_error("a simulator of the batch is in use");
   try {
     adopt();
-    static_cast<void>(own());
   } catch (...) {
     in_use_ = false;
     throw;
@@ -167,9 +177,10 @@ void ScriptedSimulator::begin_batch() {
 
 void ScriptedSimulator::run_batch(std::int64_t steps, const std::atomic<bool>& stopped) {
   batch_stopped_ = &stopped;
+  Simulator& simulator = own();  // here, as a copy takes as long as many steps
   for (std::int64_t k = 0; k < steps; ++k) {
     if (stopped) throw StoppedError();
-    simulator_->step();
+    warnings_.note_step(simulator, simulator.step());
   }
 }
 
@@ -187,6 +198,7 @@ std::shared_ptr<ScriptedSimulator> ScriptedSimulator::copy() {
   is_owned_ = false;
   copied->added_ = added_;
   copied->changes_ = changes_;
+  copied->warnings_ = warnings_;
   return copied;
 }
 

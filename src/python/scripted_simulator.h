@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/forces/force.h"
+#include "python/frame_warnings.h"
 #include "python/scene_origin.h"
 #include "simulation/diagnostics.h"
 #include "simulation/simulator.h"
@@ -41,8 +42,12 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
     return change(own());
   }
 
+  // Both warn at their end.
   void step(std::int64_t steps);
   FrameDiagnostics frame();
+
+  /// Tells what the steps of a batch found, by Python's `warnings`.
+  void warn();
 
   /// The steps of a batch: without the interpreter's lock. `stopped` ends them before the next substep, with StoppedError.
   void begin_batch();
@@ -56,15 +61,15 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
   [[nodiscard]] Points& positions();
   [[nodiscard]] Points& velocities();
 
-  /// A force that a program added, and its callable.
+  /// A force that a program added, its callable, and the body that it acts on; empty: all.
   struct Added {
     std::shared_ptr<Force> force;
     pybind11::object function;
+    std::string body;
   };
   [[nodiscard]] std::vector<Added>& added_forces() { return added_; }
 
   [[nodiscard]] const std::shared_ptr<const SceneOrigin>& origin() const { return origin_; }
-    std::string body;
 
   /// Changes since the scene was loaded that a checkpoint lacks, as JSON texts, in order.
   [[nodiscard]] std::vector<std::string>& changes() { return changes_; }
@@ -109,6 +114,7 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
   std::vector<Added> added_;
   std::vector<std::string> changes_;
   std::function<void(const Simulator&)> show_;
+  FrameWarnings warnings_;
   bool is_shared_ = false;  ///< whether the program has an array
   Points x_{3, 0};
   Points v_{3, 0};

@@ -19,14 +19,6 @@ double distance_range(const Simulator& simulator) {
   return covered.diagonal().norm() + 10.0 * thickest;
 }
 
-Index inverted_cells(const Simulator& simulator) {
-  Index count = 0;
-  for (const Body& body : simulator.network().bodies) {
-    count += count_inverted(body.cells, simulator.positions().middleCols(body.first_particle, body.particle_count));
-  }
-  return count;
-}
-
 }  // namespace
 
 double kinetic_energy(const Simulator& simulator) {
@@ -43,6 +35,14 @@ double max_stretch(const Simulator& simulator) {
     most = std::max(most, length / springs.rest_length[s] - 1.0);
   }
   return most;
+}
+
+Index inverted_cells(const Simulator& simulator) {
+  Index count = 0;
+  for (const Body& body : simulator.network().bodies) {
+    count += count_inverted(body.cells, simulator.positions().middleCols(body.first_particle, body.particle_count));
+  }
+  return count;
 }
 
 FrameDiagnostics present_diagnostics(const Simulator& simulator) {

@@ -43,6 +43,9 @@ struct FrameDiagnostics {
 /// Largest (|s| - d) / d of structural springs; 0 if none is longer than at rest.
 [[nodiscard]] double max_stretch(const Simulator& simulator);
 
+/// Number of cells of solids that are inside out.
+[[nodiscard]] Index inverted_cells(const Simulator& simulator);
+
 /// Of the present state; what is summed over steps is 0. Costs a search for the obstacle that is nearest to each particle.
 [[nodiscard]] FrameDiagnostics present_diagnostics(const Simulator& simulator);
 

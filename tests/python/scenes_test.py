@@ -1,6 +1,7 @@
 """Laws of scenes, frames and copies."""
 import json
 import os
+import re
 import unittest
 import warnings
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 import numpy
 
 import sprung
-from common import cloth, example, rope, simulator
+from common import SOURCE, cloth, example, rope, simulator
 
 
 class Scenes(unittest.TestCase):
@@ -60,6 +61,75 @@ class Scenes(unittest.TestCase):
             warnings.simplefilter("error")
             with self.assertRaises(sprung.SprungWarning):
                 sprung.load(scene)
+
+
+class WarningsOfSteps(unittest.TestCase):
+    """Scenes of tests/app/remedies.json, of which `sprung run` warns."""
+
+    def caught(self, scene, call):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            loaded = sprung.load(scene)
+            caught.clear()
+            call(loaded)
+        for each in caught:
+            self.assertIs(each.category, sprung.SprungWarning)
+            self.assertEqual(each.filename, __file__)
+        return [str(each.message) for each in caught]
+
+    def row(self, name):
+        with open(os.path.join(SOURCE, "tests", "app", "remedies.json"), encoding="utf-8") as file:
+            table = json.load(file)
+        row = next(row for row in table["rows"] if row["name"] == name)
+
+        def merge(base, more):
+            for key, value in more.items():
+                if isinstance(value, dict) and isinstance(base.get(key), dict):
+                    merge(base[key], value)
+                elif value is None:
+                    base.pop(key)
+                else:
+                    base[key] = value
+            return base
+        return merge(table["bases"][row.get("base", "rope")], row["scene"]), row["says"]
+
+    def test_come_once_whether_frames_or_steps(self):
+        def by_frames(scene):
+            one = scene.simulator()
+            for _ in range(scene.frames - 1):
+                one.frame()
+
+        def by_steps(scene):
+            one = scene.simulator()
+            one.step((scene.frames - 1) * one.steps_per_frame)
+
+        def by_batch(scene):
+            batch = sprung.Batch([scene.simulator() for _ in range(3)])
+            for _ in range(scene.frames - 1):
+                batch.frame()
+
+        def by_copies(scene):
+            one = scene.simulator()
+            state = one.state()
+            for each in (one, one.copy(), scene.simulator()):
+                each.step((scene.frames - 1) * one.steps_per_frame)
+            one.restore(state)
+            one.step((scene.frames - 1) * one.steps_per_frame)
+        for name in ("Infeasible", "InvertedCells", "LimitMissed", "ThicknessOfZero"):
+            scene, says = self.row(name)
+            for call in (by_frames, by_steps, by_batch, by_copies):
+                texts = self.caught(scene, call)
+                self.assertEqual(len([text for text in texts if re.search(says, text)]), 1, f"{name}, {call.__name__}: {texts}")
+
+    def test_as_errors_end_the_call_after_the_steps(self):
+        scene, _ = self.row("LimitMissed")
+        one = sprung.load(scene).simulator()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaises(sprung.SprungWarning):
+                one.step(3)
+        self.assertAlmostEqual(one.time, 3 * one.step_length, 12)
+        one.step(3)
 
 
 class Copies(unittest.TestCase):
