@@ -3,7 +3,8 @@
 #include "python/errors.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace py = pybind11;
@@ -14,6 +15,7 @@ namespace {
 using Numbers = py::array_t<double, py::array::c_style>;
 
 constexpr py::ssize_t kSize = sizeof(double);
+constexpr std::size_t kLongestValue = 60;  // letters of a value in a message
 
 py::array frozen(py::array array) {
   array.attr("flags").attr("writeable") = false;
@@ -36,7 +38,7 @@ Numbers numbers_from(const py::object& value, const std::string& key, const std:
   try {
     array = py::module_::import("numpy").attr("asarray")(value);
   } catch (const py::error_already_set&) {
-    refuse(key, py::str(py::type::of(value)).cast<std::string>(), rule, "give an array");
+    refuse(key, type_name(value), rule, "give an array");
   }
   const auto kind = array.attr("dtype").attr("kind").cast<std::string>();
   if (kind != "f" && kind != "i" && kind != "u" && kind != "b") {
@@ -103,6 +105,32 @@ std::vector<double> numbers_of(const py::object& value, const std::string& key, 
   return {numbers.data(), numbers.data() + count};
 }
 
+std::vector<Index> indices_of(const py::object& value, const std::string& key) {
+  const py::module_ numpy = py::module_::import("numpy");
+  const char* const rule = "must be the number of a particle, or a list of them";
+  const char* const remedy = "count particles from 0";
+  py::array array;
+  try {
+    array = numpy.attr("atleast_1d")(value).cast<py::array>();
+  } catch (const py::error_already_set&) {
+    refuse(key, type_name(value), rule, remedy);
+  }
+  const auto kind = array.attr("dtype").attr("kind").cast<std::string>();
+  if (array.ndim() != 1 || (kind != "i" && kind != "u" && array.size() > 0)) {
+    refuse(key, py::repr(value).cast<std::string>().substr(0, kLongestValue), rule, remedy);
+  }
+  std::vector<Index> indices;
+  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> numbers(array);
+  for (py::ssize_t k = 0; k < numbers.size(); ++k) {
+    const std::int64_t number = numbers.at(k);
+    if (number < 0 || number > std::numeric_limits<Index>::max()) {
+      refuse(key + "[" + std::to_string(k) + "]", std::to_string(number), rule, remedy);
+    }
+    indices.push_back(static_cast<Index>(number));
+  }
+  return indices;
+}
+
 RigidTransform pose_of(const py::object& value, const std::string& key) {
   const Numbers numbers = numbers_from(value, key, "shape (4, 4)");
   if (numbers.ndim() != 2 || numbers.shape(0) != 4 || numbers.shape(1) != 4) refuse_shape(numbers, key, "(4, 4)");
@@ -115,6 +143,8 @@ RigidTransform pose_of(const py::object& value, const std::string& key) {
   pose.translation() = matrix.topRightCorner<3, 1>();
   return pose;
 }
+
+std::string type_name(const py::handle& value) { return py::type::of(value).attr("__name__").cast<std::string>(); }
 
 py::array table_of(Index rows, const std::vector<Column>& columns) {
   py::list fields;

@@ -34,8 +34,13 @@ namespace sprung::python {
 [[nodiscard]] Vector3 vector_of(const pybind11::object& value, const std::string& key);
 /// A number for each of `count` things, from a number or an array (count,).
 [[nodiscard]] std::vector<double> numbers_of(const pybind11::object& value, const std::string& key, Index count);
+/// Numbers of particles: from a number, or a sequence or an array (n,) of whole numbers.
+[[nodiscard]] std::vector<Index> indices_of(const pybind11::object& value, const std::string& key);
 /// A (4, 4) matrix; rotation and translation are for the simulator to check.
 [[nodiscard]] RigidTransform pose_of(const pybind11::object& value, const std::string& key);
+
+/// The name of the type of a value, for messages: `list`.
+[[nodiscard]] std::string type_name(const pybind11::handle& value);
 
 /// A column of a table.
 struct Column {

@@ -4,12 +4,13 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/parts.h"
+#include "python/shape_arguments.h"
 #include "simulation/model.h"
 
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -24,15 +25,6 @@ SpringKind spring_kind(const std::string& name) {
   return static_cast<SpringKind>(found - kSpringKindNames.begin());
 }
 
-ContactMaterial material_of(double thickness, double friction, double restitution) {
-  return {.thickness = thickness, .friction = friction, .static_friction = friction, .restitution = restitution};
-}
-
-std::vector<Index> indices_of(const py::object& particles) {
-  if (py::isinstance<py::int_>(particles)) return {particles.cast<Index>()};
-  return particles.cast<std::vector<Index>>();
-}
-
 IntegratorSettings integrator_of(const std::string& name) {
   if (name == "explicit_euler") return ExplicitEulerSettings{};
   if (name == "symplectic_euler") return SymplecticEulerSettings{};
@@ -44,32 +36,71 @@ IntegratorSettings integrator_of(const std::string& name) {
          "choose explicit_euler, symplectic_euler, verlet, velocity_verlet, runge_kutta_4 or implicit_euler");
 }
 
-/// Springs of one kind: a stiffness [N/m], or a stiffness and a damping [N s/m].
-std::optional<SpringMaterial> springs_of(const py::object& value, const std::string& key) {
-  if (value.is_none()) return std::nullopt;
-  const std::vector<double> numbers =
-      numbers_of(py::isinstance<py::sequence>(value) ? value : py::make_tuple(value, 0.0), "springs." + key, 2);
-  return SpringMaterial{.value = numbers[0], .damping = numbers[1]};
+/// Keyframes: (time, position) or (time, position, rotation).
+Motion motion_of(const py::object& keyframes, bool smooth, const py::object& spin) {
+  Motion motion{.interpolation = smooth ? Interpolation::smooth : Interpolation::linear, .spin = vector_of(spin, "spin")};
+  for (const py::handle& each : keyframes) {
+    const std::string key = "keyframes[" + std::to_string(motion.keyframes.size()) + "]";
+    const auto parts = py::isinstance<py::sequence>(each) ? each.cast<py::list>() : py::list();
+    if (parts.size() != 2 && parts.size() != 3) {
+      refuse(key, type_name(each), "must be a time, a position and, if it rotates, a rotation",
+             "give (time, position) or (time, position, rotation)");
+    }
+    Keyframe& keyframe = motion.keyframes.emplace_back();
+    keyframe.time = numbers_of(parts[0], key + ".time", 1).front();
+    keyframe.position = vector_of(parts[1], key + ".position");
+    if (parts.size() == 3) keyframe.rotation = vector_of(parts[2], key + ".rotation");
+  }
+  return motion;
 }
 
-SpringMaterials materials_of(const py::object& structural, const py::object& shear, const py::object& bend) {
-  return {
-      .structural = springs_of(structural, "structural"), .shear = springs_of(shear, "shear"), .bend = springs_of(bend, "bend")};
+void add_pin(NetworkBuilder& builder, const py::object& particles, const std::string& name, const py::object& keyframes,
+             bool smooth, const py::object& spin, const py::object& origin, const std::optional<Index>& obstacle, double begin,
+             double until) {
+  Pin pin{.particles = indices_of(particles, "particles"),
+          .origin = vector_of(origin, "origin"),
+          .motion = motion_of(keyframes, smooth, spin),
+          .obstacle = obstacle.value_or(kNone),
+          .from = begin,
+          .until = until,
+          .name = name};
+  if (obstacle && *obstacle < 0) {
+    refuse("obstacle", std::to_string(*obstacle), "must be the number of an obstacle", "count the obstacles of the simulator from 0");
+  }
+  if (obstacle && pin.motion.moves()) {
+    refuse("obstacle", std::to_string(*obstacle), "cannot be there beside a motion: the pin follows one of them",
+           "give one of both");
+  }
+  builder.add_pin(std::move(pin));
 }
 
-BodyShape placed(BodyShape shape, double mass, const py::object& position, const py::object& rotation) {
-  set_total_mass(shape, mass);
-  RigidTransform pose = RigidTransform::Identity();
-  pose.linear() = rotation_from_degrees(vector_of(rotation, "rotation"));
-  pose.translation() = vector_of(position, "position");
-  place(shape, pose);
-  return shape;
+void add_attachment(NetworkBuilder& builder, const py::object& first, const py::object& particles, const std::optional<Index>& body,
+                    const std::optional<Index>& obstacle, const std::optional<double>& stiffness, double damping,
+                    const std::optional<double>& rest_length, double break_force, double begin, double until,
+                    const std::string& name) {
+  if (int{!particles.is_none()} + int{body.has_value()} + int{obstacle.has_value()} != 1) {
+    refuse("second end", "", "must be one of particles, a body and an obstacle", "give one of particles=, body= and obstacle=");
+  }
+  Attachment attachment{.name = name,
+                        .particles = indices_of(first, "first"),
+                        .second = {},
+                        .stiffness = stiffness,
+                        .damping = damping,
+                        .rest_length = rest_length,
+                        .break_force = break_force,
+                        .from = begin,
+                        .until = until};
+  if (body) {
+    attachment.second = SurfaceEnd{*body};
+  } else if (obstacle) {
+    attachment.second = ObstacleEnd{*obstacle};
+  } else {
+    attachment.second = ParticleEnds{indices_of(particles, "particles")};
+  }
+  builder.add_attachment(std::move(attachment));
 }
 
-const py::tuple& origin() {
-  static const py::tuple* zero = new py::tuple(py::make_tuple(0.0, 0.0, 0.0));  // outlives the interpreter
-  return *zero;
-}
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 void bind_network(py::module_& module) {
   py::class_<SpringNetwork>(module, "Network", "Particles, springs, bodies and pins, made by NetworkBuilder.build().")
@@ -100,154 +131,79 @@ begin_body() named another.)")
       .def(
           "add_spring",
           [](NetworkBuilder& builder, Index i, Index j, double stiffness, double rest_length, double damping,
-             const std::string& kind) { builder.add_spring(i, j, stiffness, rest_length, damping, spring_kind(kind)); },
+             const std::string& kind, bool tension_only, double yield_strain, double break_length) {
+            builder.add_spring(i, j, stiffness, rest_length, damping, spring_kind(kind),
+                               {.tension_only = tension_only, .yield = yield_strain, .break_length = break_length});
+          },
           py::arg("i"), py::arg("j"), py::arg("stiffness"), py::arg("rest_length"), py::arg("damping") = 0.0,
-          py::arg("kind") = "structural", R"(add_spring(i, j, stiffness, rest_length, damping=0.0, kind="structural")
+          py::arg("kind") = "structural", py::kw_only(), py::arg("tension_only") = false, py::arg("yield_strain") = kNever,
+          py::arg("break_length") = kNever,
+          R"(add_spring(i, j, stiffness, rest_length, damping=0.0, kind="structural", *, tension_only=False, yield_strain=inf,
+           break_length=inf)
 
-Join two particles of one body: k_s [N/m], rest length [m], k_d [N s/m]; kind: structural, shear or bend.)")
+Join two particles of one body: k_s [N/m], rest length [m], k_d [N s/m]; kind: structural, shear or bend. A spring of
+tension_only does not push. Beyond yield_strain (a fraction of the rest length) it keeps a new rest length; beyond break_length
+[m] it breaks.)")
       .def("add_angle_bend", &NetworkBuilder::add_angle_bend, py::arg("before"), py::arg("middle"), py::arg("after"),
            py::arg("stiffness"), py::arg("damping") = 0.0, R"(add_angle_bend(before, middle, after, stiffness, damping=0.0)
 
 Keep three particles in line: k [N m/rad] and a damping of the angle's rate [N m s].)")
       .def(
           "begin_body",
-          [](NetworkBuilder& builder, const std::string& name, double thickness, double friction, double restitution) {
-            builder.begin_body(name, material_of(thickness, friction, restitution));
+          [](NetworkBuilder& builder, const std::string& name, double thickness, double friction, double restitution,
+             bool self_contact, bool body_contact) {
+            builder.begin_body(name, material_of(thickness, friction, restitution), {.self = self_contact, .others = body_contact});
           },
           py::arg("name"), py::kw_only(), py::arg("thickness") = 0.0, py::arg("friction") = 0.0, py::arg("restitution") = 0.0,
-          R"(begin_body(name, *, thickness=0.0, friction=0.0, restitution=0.0)
+          py::arg("self_contact") = false, py::arg("body_contact") = true,
+          R"(begin_body(name, *, thickness=0.0, friction=0.0, restitution=0.0, self_contact=False, body_contact=True)
 
-Begin a body, to which particles and springs belong that are added later. thickness [m].)")
+Begin a body, to which particles and springs belong that are added later. thickness [m]. self_contact: it collides with itself;
+body_contact: with other bodies.)")
       .def(
           "add_body",
           [](NetworkBuilder& builder, const std::string& name, const BodyShape& shape, double thickness, double friction,
-             double restitution, bool self_contact) {
-            return builder.add_body(name, shape, material_of(thickness, friction, restitution), {.self = self_contact});
+             double restitution, bool self_contact, bool body_contact) {
+            return builder.add_body(name, shape, material_of(thickness, friction, restitution),
+                                    {.self = self_contact, .others = body_contact});
           },
           py::arg("name"), py::arg("shape"), py::kw_only(), py::arg("thickness") = 0.0, py::arg("friction") = 0.0,
-          py::arg("restitution") = 0.0, py::arg("self_contact") = false,
-          R"(add_body(name, shape, *, thickness=0.0, friction=0.0, restitution=0.0, self_contact=False)
+          py::arg("restitution") = 0.0, py::arg("self_contact") = false, py::arg("body_contact") = true,
+          R"(add_body(name, shape, *, thickness=0.0, friction=0.0, restitution=0.0, self_contact=False, body_contact=True)
 
-Add a whole body, of make_rope(), make_cloth() or make_solid(). Returns the number of its first particle. thickness [m].)")
+Add a whole body, of make_rope(), make_cloth(), make_solid() or make_mesh(). Returns the number of its first particle. The other
+arguments are those of begin_body().)")
       .def(
-          "pin",
-          [](NetworkBuilder& builder, const py::object& particles, const std::string& name) {
-            Pin pin;
-            pin.particles = indices_of(particles);
-            pin.name = name;
-            builder.add_pin(std::move(pin));
-          },
-          py::arg("particles"), py::arg("name") = "", R"(pin(particles, name="")
+          "pin", &add_pin, py::arg("particles"), py::arg("name") = "", py::kw_only(), py::arg("keyframes") = py::tuple(),
+          py::arg("smooth") = false, py::arg("spin") = origin(), py::arg("origin") = origin(), py::arg("obstacle") = py::none(),
+          py::arg("begin") = 0.0, py::arg("until") = kNever,
+          R"(pin(particles, name="", *, keyframes=(), smooth=False, spin=(0, 0, 0), origin=(0, 0, 0), obstacle=None, begin=0.0, until=inf)
 
-Fix a particle, or several. The name is that of Simulator.pins; without one it is pins[k].)")
+Fix a particle, or several. The name is that of Simulator.pins; without one it is pins[k].
+
+keyframes: tuples (time [s], displacement [m]) or (time, displacement, rotation [degrees] about the fixed axes x, y, z) move them;
+between two keyframes on a line, or smoothly. spin [degrees/s] rotates without end. Both rotate about origin [m]. obstacle: the
+number of an obstacle of the simulator, which the particles follow instead. begin, until [s]: when the pin holds.)")
+      .def("add_attachment", &add_attachment, py::arg("first"), py::kw_only(), py::arg("particles") = py::none(),
+           py::arg("body") = py::none(), py::arg("obstacle") = py::none(), py::arg("stiffness") = py::none(),
+           py::arg("damping") = 0.0, py::arg("rest_length") = py::none(), py::arg("break_force") = kNever, py::arg("begin") = 0.0,
+           py::arg("until") = kNever, py::arg("name") = "",
+           R"(add_attachment(first, *, particles=None, body=None, obstacle=None, stiffness=None, damping=0.0, rest_length=None,
+               break_force=inf, begin=0.0, until=inf, name="")
+
+Join each particle of first, a number or several, to the nearest of these points when the attachment begins: of particles, of the
+surface of a body (its number, counted from 0 as bodies were added), or of the surface of an obstacle of the simulator (its
+number). Give one of the three. A spring has a stiffness [N/m] and a damping [N s/m]; without a stiffness it is a rod. rest_length
+[m]; None: the distance at the begin. Beyond break_force [N] it breaks. begin, until [s]: when it holds. The name is that of
+Simulator.forces().)")
       .def("build", &NetworkBuilder::build, "build()\n\nThe network. Raises InputError that names every problem.");
-}
-
-void bind_shapes(py::module_& module) {
-  py::class_<BodyShape>(module, "BodyShape", "Particles, springs and surface of a body, for NetworkBuilder.add_body().")
-      .def("__len__", [](const BodyShape& shape) { return shape.positions.size(); });
-
-  const std::string springs =
-      "structural, shear, bend: k_s [N/m], or (k_s, k_d [N s/m]); None: no such springs. mass [kg] of the whole body.";
-  const std::string pose = " It is rotated by angles [degrees] about the fixed axes x, y, z, then moved [m].";
-  module.def(
-      "make_rope",
-      [](const py::object& points, std::optional<Index> particles, double mass, const py::object& structural,
-         const py::object& bend) {
-        const Points corners = points_of(points, "points");
-        RopeShape rope{.points = {}, .particles = particles, .length = {}};
-        for (Index i = 0; i < corners.cols(); ++i) rope.points.emplace_back(corners.col(i));
-        BodyShape shape = make_rope(rope, materials_of(structural, py::none(), bend));
-        set_total_mass(shape, mass);
-        return shape;
-      },
-      py::arg("points"), py::arg("particles") = py::none(), py::kw_only(), py::arg("mass"), py::arg("structural"),
-      py::arg("bend") = py::none(),
-      ("make_rope(points, particles=None, *, mass, structural, bend=None)\n\nA rope along a polyline [m], (k, 3), with so many "
-       "particles, or one at each point. " +
-       springs)
-          .c_str());
-  module.def(
-      "make_cloth",
-      [](const std::array<double, 2>& size, const std::array<Index, 2>& resolution, double mass, const py::object& structural,
-         const py::object& shear, const py::object& bend, const py::object& position, const py::object& rotation) {
-        return placed(make_cloth({.size = size, .resolution = resolution}, materials_of(structural, shear, bend)), mass, position,
-                      rotation);
-      },
-      py::arg("size"), py::arg("resolution"), py::kw_only(), py::arg("mass"), py::arg("structural"), py::arg("shear") = py::none(),
-      py::arg("bend") = py::none(), py::arg("position") = origin(), py::arg("rotation") = origin(),
-      ("make_cloth(size, resolution, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n\nA "
-       "rectangle [m] in the x-y plane, centred, with so many particles along x and y." +
-       pose + " " + springs)
-          .c_str());
-  module.def(
-      "make_solid",
-      [](const std::array<double, 3>& size, const std::array<Index, 3>& resolution, double mass, const py::object& structural,
-         const py::object& shear, const py::object& bend, const py::object& position, const py::object& rotation) {
-        const SolidShape solid{.size = Vector3(size[0], size[1], size[2]), .resolution = resolution};
-        return placed(make_solid(solid, materials_of(structural, shear, bend)), mass, position, rotation);
-      },
-      py::arg("size"), py::arg("resolution"), py::kw_only(), py::arg("mass"), py::arg("structural"), py::arg("shear") = py::none(),
-      py::arg("bend") = py::none(), py::arg("position") = origin(), py::arg("rotation") = origin(),
-      ("make_solid(size, resolution, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n\nA box "
-       "[m], centred, with so many particles along x, y and z." +
-       pose + " " + springs)
-          .c_str());
-}
-
-Obstacle make_obstacle(const std::string& name, ObstacleGeometry geometry, const py::object& position, const py::object& rotation,
-                       const ContactMaterial& material) {
-  Obstacle obstacle{.name = name, .geometry = std::move(geometry), .material = material};
-  obstacle.rest_pose.linear() = rotation_from_degrees(vector_of(rotation, "rotation"));
-  obstacle.rest_pose.translation() = vector_of(position, "position");
-  return obstacle;
-}
-
-void bind_obstacles(py::module_& module) {
-  py::class_<Obstacle>(module, "ObstacleShape",
-                       "An obstacle for a simulator of a network: of make_sphere(), make_box() or make_ground().")
-      .def_readonly("name", &Obstacle::name, "Its name.");
-  module.def(
-      "make_sphere",
-      [](const std::string& name, double radius, const py::object& position, double thickness, double friction,
-         double restitution) {
-        return make_obstacle(name, SphereGeometry{radius}, position, origin(), material_of(thickness, friction, restitution));
-      },
-      py::arg("name"), py::arg("radius"), py::kw_only(), py::arg("position") = origin(), py::arg("thickness") = 0.0,
-      py::arg("friction") = 0.0, py::arg("restitution") = 0.0,
-      R"(make_sphere(name, radius, *, position=(0, 0, 0), thickness=0.0, friction=0.0, restitution=0.0)
-
-A sphere: radius, position and thickness [m].)");
-  module.def(
-      "make_box",
-      [](const std::string& name, const py::object& size, const py::object& position, const py::object& rotation, double thickness,
-         double friction, double restitution) {
-        return make_obstacle(name, BoxGeometry{vector_of(size, "size")}, position, rotation,
-                             material_of(thickness, friction, restitution));
-      },
-      py::arg("name"), py::arg("size"), py::kw_only(), py::arg("position") = origin(), py::arg("rotation") = origin(),
-      py::arg("thickness") = 0.0, py::arg("friction") = 0.0, py::arg("restitution") = 0.0,
-      R"(make_box(name, size, *, position=(0, 0, 0), rotation=(0, 0, 0), thickness=0.0, friction=0.0, restitution=0.0)
-
-A box: size (3,), position and thickness [m], rotation [degrees] about the fixed axes x, y, z.)");
-  module.def(
-      "make_ground",
-      [](const std::string& name, double height, double thickness, double friction, double restitution) {
-        return make_obstacle(name, HalfSpaceGeometry{.normal = Vector3::UnitY(), .offset = height}, origin(), origin(),
-                             material_of(thickness, friction, restitution));
-      },
-      py::arg("name"), py::kw_only(), py::arg("height") = 0.0, py::arg("thickness") = 0.0, py::arg("friction") = 0.0,
-      py::arg("restitution") = 0.0, R"(make_ground(name, *, height=0.0, thickness=0.0, friction=0.0, restitution=0.0)
-
-All below a height [m].)");
 }
 
 }  // namespace
 
 void bind_builder(py::module_& module) {
-  bind_network(module);
   bind_shapes(module);
-  bind_obstacles(module);
+  bind_network(module);
   py::class_<ScriptedSimulator, Shared> of_network = module.attr("Simulator");
   of_network.def(py::init([](const SpringNetwork& network, double step, int steps_per_frame, const py::object& gravity,
                              const std::string& integrator, std::vector<Obstacle> obstacles, bool record_forces, bool sleep) {

@@ -1,3 +1,4 @@
+#include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/saved_simulator.h"
@@ -30,8 +31,7 @@ std::string json_of(const py::object& value, const std::string& key) {
     options["default"] = py::module_::import("sprung._scene").attr("plain");
     return py::module_::import("json").attr("dumps")(value, **options).cast<std::string>();
   } catch (const py::error_already_set& error) {
-    refuse(key, py::str(py::type::of(value)).cast<std::string>(),
-           "must be what JSON can hold: " + py::str(error.value()).cast<std::string>(),
+    refuse(key, type_name(value), "must be what JSON can hold: " + py::str(error.value()).cast<std::string>(),
            "use dicts with texts as keys, lists, texts, finite numbers, booleans and None");
   }
 }

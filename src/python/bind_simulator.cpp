@@ -134,8 +134,7 @@ Index particle_of(const SpringNetwork& network, const std::string& name, Index p
 }
 
 PinPart pin(const Shared& simulator, const std::string& body, const py::object& particles, const std::string& name) {
-  const auto numbers =
-      py::isinstance<py::int_>(particles) ? std::vector<Index>{particles.cast<Index>()} : particles.cast<std::vector<Index>>();
+  const std::vector<Index> numbers = indices_of(particles, "bodies." + body + ".particles");
   const std::size_t number = simulator->change([&](Simulator& changed) {
     std::vector<Index> held;
     for (const Index i : numbers) held.push_back(particle_of(changed.network(), body, i));
@@ -145,8 +144,7 @@ PinPart pin(const Shared& simulator, const std::string& body, const py::object& 
 }
 
 void release(ScriptedSimulator& simulator, const std::string& body, const py::object& particles) {
-  const auto numbers =
-      py::isinstance<py::int_>(particles) ? std::vector<Index>{particles.cast<Index>()} : particles.cast<std::vector<Index>>();
+  const std::vector<Index> numbers = indices_of(particles, "bodies." + body + ".particles");
   simulator.change([&](Simulator& changed) {
     std::vector<Index> freed;
     for (const Index i : numbers) freed.push_back(particle_of(changed.network(), body, i));
@@ -256,8 +254,9 @@ The diagnostics of the present, as of frame(): (1,), with 0 where a number is on
       .def("contacts", &contacts, R"(contacts()
 
 What touches at the end of the last step: a structured array with a row for each touching contact of a particle. Fields: body
-(text), particle (number within the body), obstacle (text; empty for contact between bodies), normal (unit vector towards the free
-side, (3,)).)")
+(text), particle (number within the body), obstacle (text; empty for contact between bodies), normal (unit vector towards the side
+to which the contact pushes the particle, (3,)). A contact between two faces or edges has a row for each of their corners that is
+free to move.)")
       .def("forces", &forces, R"(forces()
 
 The mean forces [N] of pins on their bodies and of attachments on their first ends, since the begin of the frame or the last

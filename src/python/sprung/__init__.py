@@ -13,13 +13,13 @@ SI units throughout: m, kg, s, N. The y axis points up. Arrays of points have a 
 - load, Scene: scenes. restore: simulators from files.
 - Simulator: step(), frame(), bodies, pins, obstacles, forces; copy(), state(), restore().
 - Batch: many simulators at once, on all cores. show: a running simulator in the browser.
-- NetworkBuilder: networks particle by particle, or of make_rope(), make_cloth() and make_solid(), with make_sphere(),
-  make_box() and make_ground() as obstacles.
+- NetworkBuilder: networks particle by particle, or of make_rope(), make_cloth(), make_solid() and make_mesh(), with
+  make_sphere(), make_box(), make_ground() and make_mesh_obstacle() as obstacles.
 - InputError, StepError, FileError, SprungWarning: what goes wrong, and the remedy.
 """
 from ._core import (Batch, Body, BodyShape, Network, NetworkBuilder, Obstacle, ObstacleShape, Pin, Scene, Simulator, Springs, State,
-                    Viewer, make_box, make_cloth, make_ground, make_rope, make_solid, make_sphere, restore,
-                    show)
+                    Viewer, make_box, make_cloth, make_ground, make_mesh, make_mesh_obstacle, make_rope, make_solid, make_sphere,
+                    restore, show)
 from ._core import version as __version__
 from ._errors import FileError, InputError, Problem, SprungWarning, StepError
 from ._scene import load
@@ -27,7 +27,7 @@ from ._scene import load
 __all__ = [
     "Batch", "Body", "BodyShape", "FileError", "InputError", "Network", "NetworkBuilder", "Obstacle", "ObstacleShape", "Pin",
     "Problem", "Scene", "Simulator", "Springs", "SprungWarning", "State", "StepError", "Viewer", "load", "make_box",
-    "make_cloth", "make_ground", "make_rope", "make_solid", "make_sphere", "restore", "show",
+    "make_cloth", "make_ground", "make_mesh", "make_mesh_obstacle", "make_rope", "make_solid", "make_sphere", "restore", "show",
 ]
 
 for _name in __all__:
