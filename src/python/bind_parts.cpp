@@ -241,7 +241,8 @@ Springs that broke are left out.)")
 It keeps the simulator alive and shows the present positions, also after springs broke, particles slept or steps were repeated.
 The next call that uses the simulator checks what was written. It raises InputError, and the positions and velocities are
 those before, if a number is not finite, if a pinned particle moved, or if a particle passed through an obstacle or a body
-intersects something. Do not write it from another thread during a step.)")
+intersects something. The paths of particles are checked, but not those of edges and faces between them: an obstacle that is
+thinner than the distance of two particles may pass between these. Do not write it from another thread during a step.)")
       .def_property(
           "velocities", &velocities,
           [](const BodyPart& part, const py::object& value) { write(part, part.simulator->velocities(), "velocities", value); },

@@ -117,5 +117,49 @@ class Obstacles(unittest.TestCase):
                 mapping["new"] = 1
 
 
+class ContactsOfBodies(unittest.TestCase):
+    """Two cubes meet along x, without gravity."""
+
+    def setUp(self):
+        cube = {"shape": {"type": "solid", "size": [0.2, 0.2, 0.2], "resolution": [4, 4, 4]}, "thickness": 0.005, "mass": 0.3,
+                "springs": {"structural": {"stiffness": 200, "damping": 0.1}, "shear": {"stiffness": 100, "damping": 0.1}}}
+        self.one = simulator({"duration": 1, "gravity": [0, 0, 0], "frame_rate": 50, "bodies": {
+            "left": {**cube, "velocity": [0.5, 0, 0], "place": {"position": [-0.12, 0.01, 0.02]}},
+            "right": {**cube, "velocity": [-0.5, 0, 0], "place": {"position": [0.12, 0, 0]}}}})
+
+    def until_they_touch(self):
+        while not len(self.one.contacts()):
+            self.one.step()
+        return self.one.contacts()
+
+    def test_rows_are_the_corners_that_face_the_other(self):
+        contacts = self.until_they_touch()
+        self.assertEqual(set(contacts["body"]), {"left", "right"})
+        self.assertEqual(set(contacts["obstacle"]), {""})
+        for name, side in (("left", 1), ("right", -1)):
+            rows = contacts[contacts["body"] == name]
+            body = self.one.bodies[name]
+            facing = side * body.particles[rows["particle"], 0]
+            self.assertGreater(facing.min(), (side * body.particles[:, 0]).max() - 0.02)
+
+    def test_normals_push_each_body_away_from_the_other(self):
+        for _ in range(5):
+            contacts = self.until_they_touch()
+            self.assertLess(contacts["normal"][contacts["body"] == "left", 0].max(), -0.9)
+            self.assertGreater(contacts["normal"][contacts["body"] == "right", 0].min(), 0.9)
+            self.one.step()
+
+    def test_forces_balance(self):
+        def momentum():
+            return sum(body.masses @ body.velocities for body in self.one.bodies.values())
+        before = momentum()
+        self.until_they_touch()
+        self.one.step(100)
+        left, right = (body.velocities[:, 0].mean() for body in self.one.bodies.values())
+        self.assertLess(left, right)  # they part
+        # Each contact conserves the momentum up to rounding, of about 1 N s.
+        numpy.testing.assert_allclose(momentum(), before, atol=1e-12)
+
+
 if __name__ == "__main__":
     unittest.main()

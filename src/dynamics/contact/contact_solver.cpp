@@ -283,7 +283,11 @@ std::vector<Index> ContactSolver::pushed() const {
 std::vector<ContactNormal> ContactSolver::normals() const {
   std::vector<ContactNormal> normals;
   for_each_set(sets_, [&](const auto& set) {
-    set.for_touching([&](Index particle, const auto& row) { normals.push_back({particle, row.normal}); });
+    set.for_touching([&](Index particle, const auto& row) {
+      const auto corner = std::ranges::find(row.particles, particle) - row.particles.begin();
+      const bool is_of_first = row.weights[static_cast<std::size_t>(corner)] >= 0.0;  // which the contact's normal pushes
+      normals.push_back({particle, is_of_first ? row.normal : Vector3(-row.normal)});
+    });
   });
   return normals;
 }

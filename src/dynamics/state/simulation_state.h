@@ -60,7 +60,7 @@ struct Slip {
 /// A touching contact at a particle.
 struct ContactNormal {
   Index particle = kNone;
-  Vector3 normal = Vector3::Zero();  ///< unit length
+  Vector3 normal = Vector3::Zero();  ///< unit length, towards the side to which the contact pushes the particle
 };
 
 /// What contact remembers, by projection.
