@@ -97,6 +97,10 @@ Vector3 vector_of(const py::object& value, const std::string& key) {
   return Eigen::Map<const Vector3>(numbers.data());
 }
 
+bool is_matrix(const py::object& value, const std::string& key) {
+  return numbers_from(value, key, "shape (3,) or (4, 4)").ndim() == 2;
+}
+
 std::vector<double> numbers_of(const py::object& value, const std::string& key, Index count) {
   const std::string wanted = "() or (" + std::to_string(count) + ",)";
   const Numbers numbers = numbers_from(value, key, "shape " + wanted);

@@ -32,6 +32,8 @@ namespace sprung::python {
 /// The same, of `count` rows.
 [[nodiscard]] Points points_of(const pybind11::object& value, const std::string& key, Index count);
 [[nodiscard]] Vector3 vector_of(const pybind11::object& value, const std::string& key);
+/// Whether this is a pose rather than a position.
+[[nodiscard]] bool is_matrix(const pybind11::object& value, const std::string& key);
 /// A number for each of `count` things, from a number or an array (count,).
 [[nodiscard]] std::vector<double> numbers_of(const pybind11::object& value, const std::string& key, Index count);
 /// Numbers of particles: from a number, or a sequence or an array (n,) of whole numbers.

@@ -19,6 +19,8 @@ namespace py = pybind11;
 namespace sprung::python {
 namespace {
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
 SpringKind spring_kind(const std::string& name) {
   const auto found = std::ranges::find(kSpringKindNames, name);
   if (found == kSpringKindNames.end()) refuse("kind", name, "must be structural, shear or bend", "choose one");
@@ -56,16 +58,17 @@ Motion motion_of(const py::object& keyframes, bool smooth, const py::object& spi
 
 void add_pin(NetworkBuilder& builder, const py::object& particles, const std::string& name, const py::object& keyframes,
              bool smooth, const py::object& spin, const py::object& origin, const std::optional<Index>& obstacle, double begin,
-             double until) {
+             const std::optional<double>& until) {
   Pin pin{.particles = indices_of(particles, "particles"),
           .origin = vector_of(origin, "origin"),
           .motion = motion_of(keyframes, smooth, spin),
           .obstacle = obstacle.value_or(kNone),
           .from = begin,
-          .until = until,
+          .until = until.value_or(kNever),
           .name = name};
   if (obstacle && *obstacle < 0) {
-    refuse("obstacle", std::to_string(*obstacle), "must be the number of an obstacle", "count the obstacles of the simulator from 0");
+    refuse("obstacle", std::to_string(*obstacle), "must be the number of an obstacle",
+           "count the obstacles of the simulator from 0");
   }
   if (obstacle && pin.motion.moves()) {
     refuse("obstacle", std::to_string(*obstacle), "cannot be there beside a motion: the pin follows one of them",
@@ -76,8 +79,8 @@ void add_pin(NetworkBuilder& builder, const py::object& particles, const std::st
 
 void add_attachment(NetworkBuilder& builder, const py::object& first, const py::object& particles, const std::optional<Index>& body,
                     const std::optional<Index>& obstacle, const std::optional<double>& stiffness, double damping,
-                    const std::optional<double>& rest_length, double break_force, double begin, double until,
-                    const std::string& name) {
+                    const std::optional<double>& rest_length, const std::optional<double>& break_force, double begin,
+                    const std::optional<double>& until, const std::string& name) {
   if (int{!particles.is_none()} + int{body.has_value()} + int{obstacle.has_value()} != 1) {
     refuse("second end", "", "must be one of particles, a body and an obstacle", "give one of particles=, body= and obstacle=");
   }
@@ -87,9 +90,9 @@ void add_attachment(NetworkBuilder& builder, const py::object& first, const py::
                         .stiffness = stiffness,
                         .damping = damping,
                         .rest_length = rest_length,
-                        .break_force = break_force,
+                        .break_force = break_force.value_or(kNever),
                         .from = begin,
-                        .until = until};
+                        .until = until.value_or(kNever)};
   if (body) {
     attachment.second = SurfaceEnd{*body};
   } else if (obstacle) {
@@ -99,8 +102,6 @@ void add_attachment(NetworkBuilder& builder, const py::object& first, const py::
   }
   builder.add_attachment(std::move(attachment));
 }
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 void bind_network(py::module_& module) {
   py::class_<SpringNetwork>(module, "Network", "Particles, springs, bodies and pins, made by NetworkBuilder.build().")
@@ -116,6 +117,7 @@ void bind_network(py::module_& module) {
           "[kg], (n,), read-only.");
 
   py::class_<NetworkBuilder>(module, "NetworkBuilder", R"(NetworkBuilder()
+--
 
 Builds a network particle by particle, or from whole bodies.)")
       .def(py::init<>())
@@ -124,28 +126,35 @@ Builds a network particle by particle, or from whole bodies.)")
           [](NetworkBuilder& builder, const py::object& position, double mass, const py::object& velocity) {
             return builder.add_particle(vector_of(position, "position"), mass, vector_of(velocity, "velocity"));
           },
-          py::arg("position"), py::arg("mass"), py::arg("velocity") = origin(), R"(add_particle(position, mass, velocity=(0, 0, 0))
+          py::arg("position"), py::arg("mass"), py::arg("velocity") = origin(),
+          R"(add_particle(self, position, mass, velocity=(0, 0, 0))
+--
 
 Add a particle at a position [m] with a mass [kg] and a velocity [m/s]. Returns its number. Particles belong to a body "network" unless
 begin_body() named another.)")
       .def(
           "add_spring",
           [](NetworkBuilder& builder, Index i, Index j, double stiffness, double rest_length, double damping,
-             const std::string& kind, bool tension_only, double yield_strain, double break_length) {
+             const std::string& kind, bool tension_only, const std::optional<double>& yield_strain,
+             const std::optional<double>& break_length) {
             builder.add_spring(i, j, stiffness, rest_length, damping, spring_kind(kind),
-                               {.tension_only = tension_only, .yield = yield_strain, .break_length = break_length});
+                               {.tension_only = tension_only,
+                                .yield = yield_strain.value_or(kNever),
+                                .break_length = break_length.value_or(kNever)});
           },
           py::arg("i"), py::arg("j"), py::arg("stiffness"), py::arg("rest_length"), py::arg("damping") = 0.0,
-          py::arg("kind") = "structural", py::kw_only(), py::arg("tension_only") = false, py::arg("yield_strain") = kNever,
-          py::arg("break_length") = kNever,
-          R"(add_spring(i, j, stiffness, rest_length, damping=0.0, kind="structural", *, tension_only=False, yield_strain=inf,
-           break_length=inf)
+          py::arg("kind") = "structural", py::kw_only(), py::arg("tension_only") = false, py::arg("yield_strain") = py::none(),
+          py::arg("break_length") = py::none(),
+          R"(add_spring(self, i, j, stiffness, rest_length, damping=0.0, kind="structural", *, tension_only=False, yield_strain=None,
+           break_length=None)
+--
 
 Join two particles of one body: k_s [N/m], rest length [m], k_d [N s/m]; kind: structural, shear or bend. A spring of
 tension_only does not push. Beyond yield_strain (a fraction of the rest length) it keeps a new rest length; beyond break_length
-[m] it breaks.)")
+[m] it breaks; None: never.)")
       .def("add_angle_bend", &NetworkBuilder::add_angle_bend, py::arg("before"), py::arg("middle"), py::arg("after"),
-           py::arg("stiffness"), py::arg("damping") = 0.0, R"(add_angle_bend(before, middle, after, stiffness, damping=0.0)
+           py::arg("stiffness"), py::arg("damping") = 0.0, R"(add_angle_bend(self, before, middle, after, stiffness, damping=0.0)
+--
 
 Keep three particles in line: k [N m/rad] and a damping of the angle's rate [N m s].)")
       .def(
@@ -156,7 +165,8 @@ Keep three particles in line: k [N m/rad] and a damping of the angle's rate [N m
           },
           py::arg("name"), py::kw_only(), py::arg("thickness") = 0.0, py::arg("friction") = 0.0, py::arg("restitution") = 0.0,
           py::arg("self_contact") = false, py::arg("body_contact") = true,
-          R"(begin_body(name, *, thickness=0.0, friction=0.0, restitution=0.0, self_contact=False, body_contact=True)
+          R"(begin_body(self, name, *, thickness=0.0, friction=0.0, restitution=0.0, self_contact=False, body_contact=True)
+--
 
 Begin a body, to which particles and springs belong that are added later. thickness [m]. self_contact: it collides with itself;
 body_contact: with other bodies.)")
@@ -169,34 +179,39 @@ body_contact: with other bodies.)")
           },
           py::arg("name"), py::arg("shape"), py::kw_only(), py::arg("thickness") = 0.0, py::arg("friction") = 0.0,
           py::arg("restitution") = 0.0, py::arg("self_contact") = false, py::arg("body_contact") = true,
-          R"(add_body(name, shape, *, thickness=0.0, friction=0.0, restitution=0.0, self_contact=False, body_contact=True)
+          R"(add_body(self, name, shape, *, thickness=0.0, friction=0.0, restitution=0.0, self_contact=False, body_contact=True)
+--
 
 Add a whole body, of make_rope(), make_cloth(), make_solid() or make_mesh(). Returns the number of its first particle. The other
 arguments are those of begin_body().)")
       .def(
           "pin", &add_pin, py::arg("particles"), py::arg("name") = "", py::kw_only(), py::arg("keyframes") = py::tuple(),
           py::arg("smooth") = false, py::arg("spin") = origin(), py::arg("origin") = origin(), py::arg("obstacle") = py::none(),
-          py::arg("begin") = 0.0, py::arg("until") = kNever,
-          R"(pin(particles, name="", *, keyframes=(), smooth=False, spin=(0, 0, 0), origin=(0, 0, 0), obstacle=None, begin=0.0, until=inf)
+          py::arg("begin") = 0.0, py::arg("until") = py::none(),
+          R"(pin(self, particles, name="", *, keyframes=(), smooth=False, spin=(0, 0, 0), origin=(0, 0, 0),
+    obstacle=None, begin=0.0, until=None)
+--
 
 Fix a particle, or several. The name is that of Simulator.pins; without one it is pins[k].
 
 keyframes: tuples (time [s], displacement [m]) or (time, displacement, rotation [degrees] about the fixed axes x, y, z) move them;
 between two keyframes on a line, or smoothly. spin [degrees/s] rotates without end. Both rotate about origin [m]. obstacle: the
-number of an obstacle of the simulator, which the particles follow instead. begin, until [s]: when the pin holds.)")
-      .def("add_attachment", &add_attachment, py::arg("first"), py::kw_only(), py::arg("particles") = py::none(),
-           py::arg("body") = py::none(), py::arg("obstacle") = py::none(), py::arg("stiffness") = py::none(),
-           py::arg("damping") = 0.0, py::arg("rest_length") = py::none(), py::arg("break_force") = kNever, py::arg("begin") = 0.0,
-           py::arg("until") = kNever, py::arg("name") = "",
-           R"(add_attachment(first, *, particles=None, body=None, obstacle=None, stiffness=None, damping=0.0, rest_length=None,
-               break_force=inf, begin=0.0, until=inf, name="")
+number of an obstacle of the simulator, which the particles follow instead. begin, until [s]: when the pin holds; None: for ever.)")
+      .def(
+          "add_attachment", &add_attachment, py::arg("first"), py::kw_only(), py::arg("particles") = py::none(),
+          py::arg("body") = py::none(), py::arg("obstacle") = py::none(), py::arg("stiffness") = py::none(),
+          py::arg("damping") = 0.0, py::arg("rest_length") = py::none(), py::arg("break_force") = py::none(),
+          py::arg("begin") = 0.0, py::arg("until") = py::none(), py::arg("name") = "",
+          R"(add_attachment(self, first, *, particles=None, body=None, obstacle=None, stiffness=None, damping=0.0, rest_length=None,
+               break_force=None, begin=0.0, until=None, name="")
+--
 
 Join each particle of first, a number or several, to the nearest of these points when the attachment begins: of particles, of the
 surface of a body (its number, counted from 0 as bodies were added), or of the surface of an obstacle of the simulator (its
 number). Give one of the three. A spring has a stiffness [N/m] and a damping [N s/m]; without a stiffness it is a rod. rest_length
-[m]; None: the distance at the begin. Beyond break_force [N] it breaks. begin, until [s]: when it holds. The name is that of
+[m]; None: the distance at the begin. Beyond break_force [N] it breaks; None: never. begin, until [s]: when it holds; None: for ever. The name is that of
 Simulator.forces().)")
-      .def("build", &NetworkBuilder::build, "build()\n\nThe network. Raises InputError that names every problem.");
+      .def("build", &NetworkBuilder::build, "build(self)\n--\n\nThe network. Raises InputError that names every problem.");
 }
 
 }  // namespace
@@ -205,8 +220,12 @@ void bind_builder(py::module_& module) {
   bind_shapes(module);
   bind_network(module);
   py::class_<ScriptedSimulator, Shared> of_network = module.attr("Simulator");
-  of_network.def(py::init([](const SpringNetwork& network, double step, int steps_per_frame, const py::object& gravity,
+  of_network.def(py::init([](const py::object& network, double step, int steps_per_frame, const py::object& gravity,
                              const std::string& integrator, std::vector<Obstacle> obstacles, bool record_forces, bool sleep) {
+                   if (!py::isinstance<SpringNetwork>(network)) {
+                     refuse("network", type_name(network), "must be a Network, as NetworkBuilder.build() makes it",
+                            "of a scene: sprung.load(scene).simulator()");
+                   }
                    SimulatorSettings settings;
                    settings.step = step;
                    settings.steps_per_frame = steps_per_frame;
@@ -214,8 +233,8 @@ void bind_builder(py::module_& module) {
                    settings.integrator = integrator_of(integrator);
                    settings.record_forces = record_forces;
                    settings.sleep = sleep;
-                   auto simulator =
-                       std::make_shared<ScriptedSimulator>(Simulator(network, settings, std::move(obstacles)), nullptr);
+                   auto simulator = std::make_shared<ScriptedSimulator>(
+                       Simulator(network.cast<const SpringNetwork&>(), settings, std::move(obstacles)), nullptr);
                    for (const std::string& text : simulator->peek().warnings()) warn(text);
                    return simulator;
                  }),

@@ -140,6 +140,12 @@ void write_springs(const std::string& key, const py::object& value, const std::v
   }
 }
 
+/// The same part of a copy of its simulator. A structure that is copied as a whole gets one copy of each simulator.
+template <class Part>
+Part deep_copy(const Part& part, const py::dict& memo) {
+  return {py::module_::import("copy").attr("deepcopy")(part.simulator, memo).template cast<Shared>(), part.number};
+}
+
 // Pins.
 
 const Pin& pin_of(const PinPart& part) { return part.simulator->peek().network().pins[part.number]; }
@@ -147,8 +153,7 @@ const Pin& pin_of(const PinPart& part) { return part.simulator->peek().network()
 void move_pin(const PinPart& part, const py::object& target, const py::object& rotation) {
   const std::string key = "pins." + pin_of(part).name + ".pose";
   RigidTransform pose = part.simulator->peek().pin_pose(part.number);
-  const py::array array = py::module_::import("numpy").attr("asarray")(target).cast<py::array>();
-  if (array.ndim() == 2) {
+  if (is_matrix(target, key)) {
     if (!rotation.is_none()) refuse(key, "", "has a rotation already", "give a position and a rotation, or a (4, 4) pose");
     pose = pose_of(target, key);
   } else {
@@ -158,8 +163,10 @@ void move_pin(const PinPart& part, const py::object& target, const py::object& r
   part.simulator->change([&](Simulator& simulator) { simulator.move_pin(part.number, pose); });
 }
 
+const Obstacle& obstacle_of(const ObstaclePart& part) { return part.simulator->peek().obstacles()[part.number]; }
+
 void move_obstacle(const ObstaclePart& part, const py::object& target) {
-  const std::string key = "obstacles." + part.simulator->peek().obstacles()[part.number].name + ".pose";
+  const std::string key = "obstacles." + obstacle_of(part).name + ".pose";
   const RigidTransform pose = pose_of(target, key);
   part.simulator->change([&](Simulator& simulator) { simulator.move_obstacle(part.number, pose); });
 }
@@ -227,6 +234,7 @@ Springs that broke are left out.)")
       .def_property_readonly(
           "name", [](const BodyPart& part) { return body_of(part).name; }, "The name in the scene.")
       .def("__len__", [](const BodyPart& part) { return body_of(part).particle_count; })
+      .def("__deepcopy__", &deep_copy<BodyPart>, py::arg("memo"))
       .def("__repr__",
            [](const BodyPart& part) {
              const Body& body = body_of(part);
@@ -288,13 +296,19 @@ The pull of a stretch limit is included if forces are recorded, see Simulator.fo
             set_springs(part.simulator, body_of(part).name, stiffness, damping, kind);
           },
           py::kw_only(), py::arg("stiffness") = py::none(), py::arg("damping") = py::none(), py::arg("kind") = py::none(),
-          R"(set_springs(*, stiffness=None, damping=None, kind=None)
+          R"(set_springs(self, *, stiffness=None, damping=None, kind=None)
+--
 
 Give springs another stiffness [N/m] and damping [N s/m]: a number for all, or an array (m,) in the order of springs. None keeps
 what is. kind: structural, shear or bend; None: all. The simulator gets a model of its own, and goes on; copies keep theirs.
 Raises InputError if the step is too large for the new springs.)");
 
   py::class_<PinPart>(module, "Pin", "A pin of a simulator, which holds particles or moves them.")
+      .def("__deepcopy__", &deep_copy<PinPart>, py::arg("memo"))
+      .def("__repr__",
+           [](const PinPart& part) {
+             return "<sprung.Pin \"" + pin_of(part).name + "\": " + counted(pin_of(part).particles.size(), "particle") + ">";
+           })
       .def_property_readonly(
           "name", [](const PinPart& part) { return pin_of(part).name; }, "The name in the scene.")
       .def_property_readonly(
@@ -310,7 +324,8 @@ Raises InputError if the step is too large for the new springs.)");
           },
           "The position now [m], (3,), read-only.")
       .def("move_to", &move_pin, py::arg("target"), py::arg("rotation") = py::none(),
-           R"(move_to(target, rotation=None)
+           R"(move_to(self, target, rotation=None)
+--
 
 Move the pin in the next step to a position [m], (3,), with a rotation [degrees] about the fixed axes x, y, z, (3,); None: as
 now. Or to a pose, (4, 4). The particles follow the rigid motion, on a line, and the pin then stays there until it is moved again.
@@ -318,9 +333,10 @@ Raises InputError if the pin holds nothing, follows an obstacle, or would move f
 large.)");
 
   py::class_<ObstaclePart>(module, "Obstacle", "An obstacle of a simulator.")
+      .def("__deepcopy__", &deep_copy<ObstaclePart>, py::arg("memo"))
+      .def("__repr__", [](const ObstaclePart& part) { return "<sprung.Obstacle \"" + obstacle_of(part).name + "\">"; })
       .def_property_readonly(
-          "name", [](const ObstaclePart& part) { return part.simulator->peek().obstacles()[part.number].name; },
-          "The name in the scene.")
+          "name", [](const ObstaclePart& part) { return obstacle_of(part).name; }, "The name in the scene.")
       .def_property(
           "pose", [](const ObstaclePart& part) { return matrix_of(part.simulator->peek().obstacle_pose(part.number)); },
           &move_obstacle,

@@ -1,3 +1,4 @@
+#include "base/format.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/errors.h"
@@ -65,22 +66,28 @@ LoadedOrigin load(const py::object& scene, const py::object& overrides, const st
 }  // namespace
 
 void bind_scene(py::module_& module) {
-  py::class_<LoadedOrigin>(module, "Scene", R"(A scene that was read and built, made by sprung.load().)")
+  py::class_<LoadedOrigin>(module, "Scene", "A scene that was read and built, made by sprung.load().")
+      .def("__repr__",
+           [](const LoadedOrigin& scene) {
+             return "<sprung.Scene of " + counted(static_cast<std::size_t>(scene.frames), "frame") + ": " +
+                    py::repr(py::cast(scene.first)).cast<std::string>() + ">";
+           })
       .def(
           "simulator", [](const LoadedOrigin& scene) { return scene.first->copy(); },
-          "simulator()\n\nA new simulator at time 0. All simulators of a scene share the model.")
+          "simulator(self)\n--\n\nA new simulator at time 0. All simulators of a scene share the model.")
       .def_readonly("frames", &LoadedOrigin::frames, "Number of frames in the duration of the scene; the first is at time 0.")
       .def_readonly("frame_rate", &LoadedOrigin::frame_rate, "Frames per second [1/s].")
       .def_readonly("largest_stable_step", &LoadedOrigin::largest_stable_step, "[s]; infinity without a bound.")
       .def_readonly("warnings", &LoadedOrigin::warnings, "What load() warned of, a list of texts.")
       .def(
           "dict", [](const LoadedOrigin& scene) { return py::module_::import("json").attr("loads")(scene.resolved); },
-          "dict()\n\nThe scene with overrides applied and defaults filled in, as a dict.");
+          "dict(self)\n--\n\nThe scene with overrides applied and defaults filled in, as a dict.");
 
   module.def("load", &load, py::arg("scene"), py::kw_only(), py::arg("overrides") = py::none(),
              py::arg("mesh_paths") = std::vector<std::filesystem::path>());
   module.def("restore", &restore, py::arg("path"), py::kw_only(), py::arg("forces") = std::vector<py::function>(),
              py::arg("mesh_paths") = std::vector<std::filesystem::path>(), R"(restore(path, *, forces=(), mesh_paths=())
+--
 
 A simulator as Simulator.save(path) wrote it, which continues bit by bit. The file has the scene, but neither its meshes nor
 functions. Meshes must be where they were, or in one of the folders mesh_paths. forces: the functions that the simulator had

@@ -111,7 +111,7 @@ void bind_bodies(py::module_& module) {
       },
       py::arg("points"), py::arg("particles") = py::none(), py::kw_only(), py::arg("mass"), py::arg("structural"),
       py::arg("bend") = py::none(),
-      ("make_rope(points, particles=None, *, mass, structural, bend=None)\n\nA rope along a polyline [m], (k, 3), with so many "
+      ("make_rope(points, particles=None, *, mass, structural, bend=None)\n--\n\nA rope along a polyline [m], (k, 3), with so many "
        "particles, or one at each point. " +
        springs)
           .c_str());
@@ -124,7 +124,7 @@ void bind_bodies(py::module_& module) {
       },
       py::arg("size"), py::arg("resolution"), py::kw_only(), py::arg("mass"), py::arg("structural"), py::arg("shear") = py::none(),
       py::arg("bend") = py::none(), py::arg("position") = origin(), py::arg("rotation") = origin(),
-      ("make_cloth(size, resolution, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n\nA "
+      ("make_cloth(size, resolution, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n--\n\nA "
        "rectangle [m] in the x-y plane, centred, with so many particles along x and y." +
        pose + " " + springs)
           .c_str());
@@ -137,7 +137,8 @@ void bind_bodies(py::module_& module) {
       },
       py::arg("size"), py::arg("resolution"), py::kw_only(), py::arg("mass"), py::arg("structural"), py::arg("shear") = py::none(),
       py::arg("bend") = py::none(), py::arg("position") = origin(), py::arg("rotation") = origin(),
-      ("make_solid(size, resolution, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n\nA box "
+      ("make_solid(size, resolution, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n--\n\nA "
+       "box "
        "[m], centred, with so many particles along x, y and z." +
        pose + " " + springs)
           .c_str());
@@ -153,7 +154,7 @@ void bind_bodies(py::module_& module) {
       },
       py::arg("mesh"), py::kw_only(), py::arg("mass"), py::arg("structural"), py::arg("shear") = py::none(),
       py::arg("bend") = py::none(), py::arg("position") = origin(), py::arg("rotation") = origin(),
-      ("make_mesh(mesh, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n\nA mesh with a "
+      ("make_mesh(mesh, *, mass, structural, shear=None, bend=None, position=(0, 0, 0), rotation=(0, 0, 0))\n--\n\nA mesh with a "
        "particle at each vertex: the path of an OBJ file, or (vertices, faces) with vertices [m], (n, 3), and faces as lists of "
        "vertex numbers, or an array (f, 3)." +
        pose + " " + springs)
@@ -182,6 +183,7 @@ void bind_obstacles(py::module_& module) {
       py::arg("name"), py::arg("radius"), py::kw_only(), py::arg("position") = origin(), py::arg("thickness") = 0.0,
       py::arg("friction") = 0.0, py::arg("restitution") = 0.0,
       R"(make_sphere(name, radius, *, position=(0, 0, 0), thickness=0.0, friction=0.0, restitution=0.0)
+--
 
 A sphere: radius, position and thickness [m].)");
   module.def(
@@ -194,17 +196,20 @@ A sphere: radius, position and thickness [m].)");
       py::arg("name"), py::arg("size"), py::kw_only(), py::arg("position") = origin(), py::arg("rotation") = origin(),
       py::arg("thickness") = 0.0, py::arg("friction") = 0.0, py::arg("restitution") = 0.0,
       R"(make_box(name, size, *, position=(0, 0, 0), rotation=(0, 0, 0), thickness=0.0, friction=0.0, restitution=0.0)
+--
 
 A box: size (3,), position and thickness [m], rotation [degrees] about the fixed axes x, y, z.)");
   module.def(
       "make_mesh_obstacle",
       [](const std::string& name, const py::object& mesh, const py::object& position, const py::object& rotation, double thickness,
          double friction, double restitution) {
-        return make_obstacle(name, obstacle_mesh(name, mesh_of(mesh)), position, rotation, material_of(thickness, friction, restitution));
+        return make_obstacle(name, obstacle_mesh(name, mesh_of(mesh)), position, rotation,
+                             material_of(thickness, friction, restitution));
       },
       py::arg("name"), py::arg("mesh"), py::kw_only(), py::arg("position") = origin(), py::arg("rotation") = origin(),
       py::arg("thickness") = 0.0, py::arg("friction") = 0.0, py::arg("restitution") = 0.0,
       R"(make_mesh_obstacle(name, mesh, *, position=(0, 0, 0), rotation=(0, 0, 0), thickness=0.0, friction=0.0, restitution=0.0)
+--
 
 A mesh: the path of an OBJ, STL, PLY, OFF, glTF or 3DS file, or (vertices, faces) as of make_mesh(). A closed mesh has an inside;
 of an open one, each particle stays on its side. position and thickness [m], rotation [degrees] about the fixed axes x, y, z.)");
@@ -216,6 +221,7 @@ of an open one, each particle stays on its side. position and thickness [m], rot
       },
       py::arg("name"), py::kw_only(), py::arg("height") = 0.0, py::arg("thickness") = 0.0, py::arg("friction") = 0.0,
       py::arg("restitution") = 0.0, R"(make_ground(name, *, height=0.0, thickness=0.0, friction=0.0, restitution=0.0)
+--
 
 All below a height [m].)");
 }

@@ -1,3 +1,4 @@
+#include "base/format.h"
 #include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/state/simulation_state.h"
 #include "python/arrays.h"
@@ -21,6 +22,8 @@ namespace py = pybind11;
 
 namespace sprung::python {
 namespace {
+
+constexpr int kTimeDigits = 9;  // the last ones of a sum of steps are rounding
 
 /// A state with its caches, as copies share it.
 struct StateSnapshot {
@@ -166,13 +169,18 @@ std::string text_of(ScriptedSimulator& simulator) {
   const Simulator& read = simulator.peek();
   std::string names;
   for (const Body& body : read.network().bodies) names += (names.empty() ? "" : ", ") + body.name;
-  return "<sprung.Simulator of " + names + " at " + py::str(py::float_(read.time())).cast<std::string>() + " s>";
+  return "<sprung.Simulator of " + names + " at " + format_number(read.time(), kTimeDigits) + " s>";
 }
 
 void bind_state(py::module_& module) {
   py::class_<StateSnapshot>(module, "State", R"(A state of a simulator, with all that decides how it continues.
 
 Simulator.restore continues from it, bit by bit. It never changes.)")
+      .def("__repr__",
+           [](const StateSnapshot& state) {
+             return "<sprung.State of " + counted(static_cast<std::size_t>(state.checkpoint->state.x.cols()), "particle") + " at " +
+                    format_number(state.time, kTimeDigits) + " s>";
+           })
       .def_readonly("time", &StateSnapshot::time, "Time [s].")
       .def_property_readonly(
           "positions", [](const StateSnapshot& state) { return copy_of(state.checkpoint->state.x); },
@@ -180,6 +188,8 @@ Simulator.restore continues from it, bit by bit. It never changes.)")
       .def_property_readonly(
           "velocities", [](const StateSnapshot& state) { return copy_of(state.checkpoint->state.v); },
           "Velocities of all particles [m/s], (n, 3), a read-only copy.")
+      .def(
+          "__deepcopy__", [](const py::object& self, const py::dict& /*memo*/) { return self; }, py::arg("memo"))
       .def(
           "__eq__", [](const StateSnapshot& a, const StateSnapshot& b) { return a.checkpoint->state == b.checkpoint->state; },
           py::arg("other"), py::is_operator(), "Whether both states are equal bit by bit.")
@@ -190,14 +200,16 @@ Simulator.restore continues from it, bit by bit. It never changes.)")
 
 void bind_batch(py::module_& module) {
   py::class_<Batch>(module, "Batch", R"(Batch(simulators)
+--
 
 Many simulators that step at once, on all cores. Each gets the same bits as alone.)")
       .def(py::init<std::vector<Shared>>(), py::arg("simulators"))
-      .def("step", &Batch::step, py::arg("steps") = 1, R"(step(steps=1)
+      .def("step", &Batch::step, py::arg("steps") = 1, R"(step(self, steps=1)
+--
 
 Make so many steps of each simulator. If one fails, it stays at the begin of its step, the others go on, and the error of the
 first that failed is raised. Ctrl-C stops each at the begin of a step.)")
-      .def("frame", &Batch::frame, "frame()\n\nMake the steps of each simulator to the end of its frame.")
+      .def("frame", &Batch::frame, "frame(self)\n--\n\nMake the steps of each simulator to the end of its frame.")
       .def_property_readonly("simulators", &Batch::simulators, "The simulators, in order.")
       .def("__len__", [](const Batch& batch) { return batch.simulators().size(); });
 }
@@ -206,25 +218,29 @@ first that failed is raised. Ctrl-C stops each at the begin of a step.)")
 
 void bind_simulator(py::module_& module) {
   bind_state(module);
-  py::class_<ScriptedSimulator, Shared> simulator(module, "Simulator", R"(A simulation that steps.
+  py::class_<ScriptedSimulator, Shared> simulator(
+      module, "Simulator",
+      R"(Simulator(network, *, step=0.001, steps_per_frame=1, gravity=(0, -9.81, 0), integrator="verlet", obstacles=(), record_forces=False,
+          sleep=True)
+--
 
-Made by Scene.simulator(), by sprung.restore(), or of a network:
-
-Simulator(network, *, step=0.001, steps_per_frame=1, gravity=(0, -9.81, 0), integrator="verlet", obstacles=(),
-          record_forces=False, sleep=True)
+A simulation that steps, made by Scene.simulator(), by sprung.restore(), or of a Network.
 
 step [s], gravity [m/s^2]; integrator: explicit_euler, symplectic_euler, verlet, velocity_verlet, runge_kutta_4 or
-implicit_euler. Raises InputError for a step that is too large.
+implicit_euler; obstacles: a list of ObstacleShape. record_forces: for forces(). sleep: bodies at rest cost nothing. Raises
+InputError for a step that is too large.
 
 Steps run without the interpreter's lock, so several threads may step several simulators. A simulator that is stepping is
-refused to other threads.)");
+refused to other threads, by RuntimeError. It cannot be pickled: a process loads its scene itself, or a file of save().)");
   simulator
       .def(
-          "frame", [](ScriptedSimulator& self) { return diagnostics_table(self.frame()); }, R"(frame()
+          "frame", [](ScriptedSimulator& self) { return diagnostics_table(self.frame()); }, R"(frame(self)
+--
 
 Make the steps to the end of the present frame. Returns its diagnostics: a structured array of one row, with energies [J], the
 largest stretch, counts of contacts and so on, as the columns of diagnostics.csv. Raises as step().)")
-      .def("diagnostics", &diagnostics, R"(diagnostics()
+      .def("diagnostics", &diagnostics, R"(diagnostics(self)
+--
 
 The diagnostics of the present, as of frame(): (1,), with 0 where a number is one of the steps of a frame.)")
       .def_property_readonly(
@@ -251,22 +267,25 @@ The diagnostics of the present, as of frame(): (1,), with 0 where a number is on
           "Of springs, attachments and bends [J].")
       .def_property_readonly(
           "gravity_energy", [](ScriptedSimulator& self) { return self.read().gravity_energy(); }, "Sum of -m g . x [J].")
-      .def("contacts", &contacts, R"(contacts()
+      .def("contacts", &contacts, R"(contacts(self)
+--
 
 What touches at the end of the last step: a structured array with a row for each touching contact of a particle. Fields: body
 (text), particle (number within the body), obstacle (text; empty for contact between bodies), normal (unit vector towards the side
 to which the contact pushes the particle, (3,)). A contact between two faces or edges has a row for each of their corners that is
 free to move.)")
-      .def("forces", &forces, R"(forces()
+      .def("forces", &forces, R"(forces(self)
+--
 
 The mean forces [N] of pins on their bodies and of attachments on their first ends, since the begin of the frame or the last
 reset_forces(): a structured array with the fields name (text) and force (3,). Forces on obstacles are not recorded. Raises InputError
 unless the scene has "output": {"forces": true}, or the simulator was made with record_forces=True.)")
       .def(
           "reset_forces", [](ScriptedSimulator& self) { self.change([](Simulator& changed) { changed.reset_forces(); }); },
-          "reset_forces()\n\nBegin a new interval for forces(). frame() does so too.")
+          "reset_forces(self)\n--\n\nBegin a new interval for forces(). frame() does so too.")
       .def("add_force", &add_force, py::arg("function"), py::kw_only(), py::arg("body") = py::none(),
-           R"(add_force(function, *, body=None)
+           R"(add_force(self, function, *, body=None)
+--
 
 Add an external force. Steps call function(x, v, t) with positions [m] and velocities [m/s] of all particles, or of one body,
 as read-only copies (n, 3), and the time [s]; it returns forces [N], (n, 3). Body.slice has the rows of a body. If it raises, the
@@ -274,39 +293,50 @@ step raises the same exception, and the simulator is at the begin of the step. I
 is not finite, the step raises InputError. add_force() calls it too, and does not add it if it fails. It may not use the
 simulator. Runge-Kutta calls it four times a step, and a repeated step calls it again, so it must
 depend on its arguments alone.)")
-      .def("remove_force", &remove_force, py::arg("function"), "remove_force(function)\n\nRemove a force that was added.")
-      .def("pin", &pin, py::arg("body"), py::arg("particles"), py::arg("name"), R"(pin(body, particles, name)
+      .def("remove_force", &remove_force, py::arg("function"), "remove_force(self, function)\n--\n\nRemove a force that was added.")
+      .def("pin", &pin, py::arg("body"), py::arg("particles"), py::arg("name"), R"(pin(self, body, particles, name)
+--
 
 Fix particles of a body, a number or several, where they are, and return their pin. Particles that are pinned already stay with
 their pin.)")
-      .def("release", &release, py::arg("body"), py::arg("particles"), R"(release(body, particles)
+      .def("release", &release, py::arg("body"), py::arg("particles"), R"(release(self, body, particles)
+--
 
 Free particles of a body, a number or several, from their pin, with its velocity.)")
-      .def("state", &state_of, "state()\n\nThe present state, from which restore() continues bit by bit.")
+      .def("state", &state_of, "state(self)\n--\n\nThe present state, from which restore() continues bit by bit.")
       .def(
           "restore",
           [](ScriptedSimulator& self, const StateSnapshot& state) {
             self.change([&](Simulator& changed) { changed.restore(*state.checkpoint); });
           },
-          py::arg("state"), R"(restore(state)
+          py::arg("state"), R"(restore(self, state)
+--
 
 Continue from a state of this simulator, of a copy, or of another one of the same scene. Gravity and springs stay as they are
 now. Views show the restored positions. Raises InputError if the state does not fit; nothing has changed then.)")
-      .def("copy", &ScriptedSimulator::copy, R"(copy()
+      .def("copy", &ScriptedSimulator::copy, R"(copy(self)
+--
 
 A simulator that continues as this one would, bit by bit. Both share the model and the added forces. It
 costs next to nothing: the first of both that steps then pays for the copy, as much as a few dozen steps.)")
       .def("__copy__", &ScriptedSimulator::copy)
       .def(
           "__deepcopy__", [](ScriptedSimulator& self, const py::dict& /*memo*/) { return self.copy(); }, py::arg("memo"))
-      .def("save", &save, py::arg("path"), R"(save(path)
+      .def("save", &save, py::arg("path"), R"(save(self, path)
+--
 
 Write a file from which sprung.restore(path) continues bit by bit: the state, the scene with its overrides, and changes of gravity
 and springs. Meshes, added forces and the network of a NetworkBuilder are not in the file. Raises FileError; a former file then
 stays.)")
-      .def("load", &load_state, py::arg("path"), R"(load(path)
+      .def("load", &load_state, py::arg("path"), R"(load(self, path)
+--
 
 Continue from a saved simulator of the same scene or network. Raises FileError or InputError; nothing has changed then.)")
+      .def("__reduce__",
+           [](const py::object& /*self*/) -> py::object {
+             throw py::type_error(
+                 "a simulator cannot be pickled: save(path) it and call sprung.restore(path), or load its scene in each process");
+           })
       .def("__repr__", &text_of);
   add_step(simulator);
   bind_batch(module);

@@ -28,9 +28,13 @@ bool read_steps(PyObject* const* arguments, Py_ssize_t count, PyObject* names, l
 PyObject* step(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* names) {
   long long steps = 1;
   if ((count > 0 || names != nullptr) && !read_steps(arguments, count, names, steps)) return nullptr;
+  // The descriptor has checked the class, which has no bases and no derived class in C++.
+  const void* value = reinterpret_cast<py::detail::instance*>(self)->get_value_and_holder().value_ptr();
+  if (value == nullptr) {
+    PyErr_SetString(PyExc_TypeError, "Simulator.__init__() was not called");
+    return nullptr;
+  }
   try {
-    // The descriptor has checked the class, which has no bases and no derived class in C++.
-    const void* value = reinterpret_cast<py::detail::instance*>(self)->get_value_and_holder().value_ptr();
     static_cast<ScriptedSimulator*>(const_cast<void*>(value))->step(steps);
   } catch (...) {
     set_error(std::current_exception());

@@ -21,7 +21,7 @@ Viewer show(const std::shared_ptr<ScriptedSimulator>& /*simulator*/, bool /*open
 void bind_show(py::module_& module) {
   py::class_<Viewer>(module, "Viewer", "Not in this build.");
   module.def("show", &show, py::arg("simulator"), py::kw_only(), py::arg("open") = true, py::arg("port") = 0,
-             "show(simulator, *, open=True, port=0)\n\nNot in this build.");
+             "show(simulator, *, open=True, port=0)\n--\n\nNot in this build.");
 }
 
 }  // namespace sprung::python

@@ -63,14 +63,16 @@ void bind_show(py::module_& module) {
 
 Use it in a with statement, or close() it.)")
       .def_property_readonly("address", &Viewer::address, "The address of the page, on this machine alone.")
-      .def("refresh", &Viewer::refresh, R"(refresh()
+      .def("refresh", &Viewer::refresh, R"(refresh(self)
+--
 
 Show the present. step() and frame() do so themselves, at most 60 times a second.)")
-      .def("close", &Viewer::close, "close()\n\nEnd the server. The page keeps what it shows.")
+      .def("close", &Viewer::close, "close(self)\n--\n\nEnd the server. The page keeps what it shows.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](Viewer& self, const py::args& /*error*/) { self.close(); });
   module.def("show", &show, py::arg("simulator"), py::kw_only(), py::arg("open") = true, py::arg("port") = 0,
              R"(show(simulator, *, open=True, port=0)
+--
 
 Show a running simulator in the browser, while the program steps it. open: open a browser; otherwise only Viewer.address is there.
 port 0: any free one. Returns a Viewer. Without the viewer in the build, raises RuntimeError.)");

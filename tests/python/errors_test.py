@@ -45,6 +45,17 @@ class InputErrors(unittest.TestCase):
         self.assertIsInstance(caught.exception, OSError)
         self.assertIn("missing.json", str(caught.exception))
 
+    def test_of_wrong_types(self):
+        with self.assertRaisesRegex(TypeError, "overrides must be a dict"):
+            sprung.load(cloth(), overrides=["step=0.001"])
+        with self.assertRaises(sprung.InputError) as caught:
+            sprung.Simulator(cloth())
+        self.assertIn("sprung.load(scene).simulator()", caught.exception.problems[0].remedy)
+        with self.assertRaisesRegex(TypeError, "__init__"):
+            sprung.Simulator.__new__(sprung.Simulator).step()
+        with self.assertRaisesRegex(TypeError, "save"):
+            pickle.dumps(simulator(rope()))
+
     def test_of_negative_steps(self):
         with self.assertRaises(sprung.InputError):
             simulator(rope()).step(-1)

@@ -1,4 +1,5 @@
 """Laws of scenes, frames and copies."""
+import copy
 import json
 import os
 import re
@@ -141,6 +142,20 @@ class Copies(unittest.TestCase):
         for each in (original, twin):
             each.step(60)
         self.assertEqual(original.state(), twin.state())
+
+    def test_deep_copies_keep_parts_and_simulators_together(self):
+        one = simulator(cloth())
+        one.step(5)
+        mine = {"simulator": one, "parts": [one.bodies["cloth"], one.pins["hand"], one.obstacles["ball"]], "state": one.state()}
+        theirs = copy.deepcopy(mine)
+        body, pin, ball = theirs["parts"]
+        body.velocities[:] = 0.1
+        pin.move_to(pin.position + [0, 0.01, 0])
+        theirs["simulator"].step()
+        self.assertAlmostEqual(pin.position[1], 0.01, 12)
+        self.assertEqual(one.state(), mine["state"])
+        self.assertEqual(theirs["state"], mine["state"])
+        self.assertEqual(ball.name, "ball")
 
     def test_a_state_is_restored_bit_by_bit(self):
         one = simulator(cloth())

@@ -57,7 +57,7 @@ class Pins(unittest.TestCase):
 
     def test_nonsense_is_refused(self):
         pin = simulator(cloth()).pins["hand"]
-        for wrong in ([0, 0], "here", numpy.zeros((4, 4)), 2 * numpy.eye(4), [numpy.nan, 0, 0]):
+        for wrong in ([0, 0], "here", numpy.zeros((4, 4)), 2 * numpy.eye(4), [numpy.nan, 0, 0], [[1, 2], [3]], None):
             with self.assertRaises(sprung.InputError):
                 pin.move_to(wrong)
 

@@ -17,7 +17,7 @@ def plain(value: Any) -> Any:
 
 
 def load(scene: Union[str, "os.PathLike[str]", Mapping[str, Any]], *, overrides: Optional[Mapping[str, Any]] = None,
-         mesh_paths: Iterable[Union[str, "os.PathLike[str]"]] = ()) -> "_core.Scene":
+         mesh_paths: Union[str, "os.PathLike[str]", Iterable[Union[str, "os.PathLike[str]"]]] = ()) -> "_core.Scene":
     """Load a scene: a path of a JSON file, or a dict with the same keys.
 
     overrides: values of keys, ``{"bodies.cloth.mass": 0.3, "step": 0.001}`` (the option ``--set`` of the program).
@@ -26,8 +26,11 @@ def load(scene: Union[str, "os.PathLike[str]", Mapping[str, Any]], *, overrides:
     Raises InputError with all problems of the scene, and FileError if it cannot be read. What is a probable mistake comes as a
     SprungWarning.
     """
+    if overrides is not None and not isinstance(overrides, Mapping):
+        raise TypeError(f"overrides must be a dict of keys and values, not a {type(overrides).__name__}")
+    folders = [mesh_paths] if isinstance(mesh_paths, (str, os.PathLike)) else list(mesh_paths)
     loaded = _core.load(dict(scene) if isinstance(scene, Mapping) else scene,
-                        overrides=None if overrides is None else dict(overrides), mesh_paths=list(mesh_paths))
+                        overrides=None if overrides is None else dict(overrides), mesh_paths=folders)
     for text in loaded.warnings:
         warnings.warn(text, SprungWarning, stacklevel=2)
     return loaded
