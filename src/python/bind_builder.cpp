@@ -1,10 +1,10 @@
 #include "collision/shapes/obstacle.h"
 #include "network/network_builder.h"
-#include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/errors.h"
 #include "python/parts.h"
 #include "python/shape_arguments.h"
+#include "python/simulator/arrays.h"
+#include "python/simulator/errors.h"
 #include "simulation/model.h"
 
 #include <pybind11/stl.h>
@@ -116,11 +116,8 @@ void bind_network(py::module_& module) {
           },
           "[kg], (n,), read-only.");
 
-  py::class_<NetworkBuilder>(module, "NetworkBuilder", R"(NetworkBuilder()
---
-
-Builds a network particle by particle, or from whole bodies.)")
-      .def(py::init<>())
+  py::class_<NetworkBuilder>(module, "NetworkBuilder", "Builds a network particle by particle, or from whole bodies.")
+      .def(py::init<>(), "__init__(self)\n--\n\nWithout particles.")
       .def(
           "add_particle",
           [](NetworkBuilder& builder, const py::object& position, double mass, const py::object& velocity) {
@@ -184,11 +181,10 @@ body_contact: with other bodies.)")
 
 Add a whole body, of make_rope(), make_cloth(), make_solid() or make_mesh(). Returns the number of its first particle. The other
 arguments are those of begin_body().)")
-      .def(
-          "pin", &add_pin, py::arg("particles"), py::arg("name") = "", py::kw_only(), py::arg("keyframes") = py::tuple(),
-          py::arg("smooth") = false, py::arg("spin") = origin(), py::arg("origin") = origin(), py::arg("obstacle") = py::none(),
-          py::arg("begin") = 0.0, py::arg("until") = py::none(),
-          R"(pin(self, particles, name="", *, keyframes=(), smooth=False, spin=(0, 0, 0), origin=(0, 0, 0),
+      .def("pin", &add_pin, py::arg("particles"), py::arg("name") = "", py::kw_only(), py::arg("keyframes") = py::tuple(),
+           py::arg("smooth") = false, py::arg("spin") = origin(), py::arg("origin") = origin(), py::arg("obstacle") = py::none(),
+           py::arg("begin") = 0.0, py::arg("until") = py::none(),
+           R"(pin(self, particles, name="", *, keyframes=(), smooth=False, spin=(0, 0, 0), origin=(0, 0, 0),
     obstacle=None, begin=0.0, until=None)
 --
 
@@ -220,27 +216,35 @@ void bind_builder(py::module_& module) {
   bind_shapes(module);
   bind_network(module);
   py::class_<ScriptedSimulator, Shared> of_network = module.attr("Simulator");
-  of_network.def(py::init([](const py::object& network, double step, int steps_per_frame, const py::object& gravity,
-                             const std::string& integrator, std::vector<Obstacle> obstacles, bool record_forces, bool sleep) {
-                   if (!py::isinstance<SpringNetwork>(network)) {
-                     refuse("network", type_name(network), "must be a Network, as NetworkBuilder.build() makes it",
-                            "of a scene: sprung.load(scene).simulator()");
-                   }
-                   SimulatorSettings settings;
-                   settings.step = step;
-                   settings.steps_per_frame = steps_per_frame;
-                   settings.gravity = vector_of(gravity, "gravity");
-                   settings.integrator = integrator_of(integrator);
-                   settings.record_forces = record_forces;
-                   settings.sleep = sleep;
-                   auto simulator = std::make_shared<ScriptedSimulator>(
-                       Simulator(network.cast<const SpringNetwork&>(), settings, std::move(obstacles)), nullptr);
-                   for (const std::string& text : simulator->peek().warnings()) warn(text);
-                   return simulator;
-                 }),
-                 py::arg("network"), py::kw_only(), py::arg("step") = 0.001, py::arg("steps_per_frame") = 1,
-                 py::arg("gravity") = py::make_tuple(0.0, -9.81, 0.0), py::arg("integrator") = "verlet",
-                 py::arg("obstacles") = std::vector<Obstacle>(), py::arg("record_forces") = false, py::arg("sleep") = true);
+  of_network.def(
+      py::init([](const py::object& network, double step, int steps_per_frame, const py::object& gravity,
+                  const std::string& integrator, std::vector<Obstacle> obstacles, bool record_forces, bool sleep) {
+        if (!py::isinstance<SpringNetwork>(network)) {
+          refuse("network", type_name(network), "must be a Network, as NetworkBuilder.build() makes it",
+                 "of a scene: sprung.load(scene).simulator()");
+        }
+        SimulatorSettings settings;
+        settings.step = step;
+        settings.steps_per_frame = steps_per_frame;
+        settings.gravity = vector_of(gravity, "gravity");
+        settings.integrator = integrator_of(integrator);
+        settings.record_forces = record_forces;
+        settings.sleep = sleep;
+        auto simulator = std::make_shared<ScriptedSimulator>(
+            Simulator(network.cast<const SpringNetwork&>(), settings, std::move(obstacles)), nullptr);
+        for (const std::string& text : simulator->peek().warnings()) warn(text);
+        return simulator;
+      }),
+      py::arg("network"), py::kw_only(), py::arg("step") = 0.001, py::arg("steps_per_frame") = 1,
+      py::arg("gravity") = py::make_tuple(0.0, -9.81, 0.0), py::arg("integrator") = "verlet",
+      py::arg("obstacles") = std::vector<Obstacle>(), py::arg("record_forces") = false, py::arg("sleep") = true,
+      R"(__init__(self, network, *, step=0.001, steps_per_frame=1, gravity=(0, -9.81, 0), integrator="verlet", obstacles=(),
+         record_forces=False, sleep=True)
+--
+
+Of a network. step [s], gravity [m/s^2]; integrator: explicit_euler, symplectic_euler, verlet, velocity_verlet, runge_kutta_4 or
+implicit_euler; obstacles: a list of ObstacleShape. record_forces: for forces(). sleep: bodies at rest cost nothing. Raises
+InputError for a step that is too large.)");
 }
 
 }  // namespace sprung::python

@@ -1,8 +1,9 @@
 #include "base/format.h"
-#include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/errors.h"
 #include "python/parts.h"
+#include "python/simulator/arrays.h"
+#include "python/simulator/changes.h"
+#include "python/simulator/errors.h"
 #include "simulation/model.h"
 #include "simulation/tension.h"
 
@@ -110,36 +111,6 @@ py::array tension(const BodyPart& part) {
   return copy_of(std::span(all.data() + body.first_spring, static_cast<std::size_t>(body.spring_count)));
 }
 
-/// Of the springs of the model, those of the body that are left, of this kind.
-std::vector<std::size_t> springs_left(const Simulator& simulator, const Body& body, const std::optional<SpringKind>& kind) {
-  std::vector<std::size_t> left;
-  for (Index s = body.first_spring; s < body.first_spring + body.spring_count; ++s) {
-    const bool is_wanted = !kind || simulator.model()->network().springs.kind[s] == *kind;
-    if (is_wanted && !simulator.state().springs.is_broken(s)) left.push_back(static_cast<std::size_t>(s));
-  }
-  return left;
-}
-
-std::optional<SpringKind> kind_of(const py::object& name, const std::string& key) {
-  if (name.is_none()) return std::nullopt;
-  const auto text = py::str(name).cast<std::string>();
-  const auto found = std::ranges::find(kSpringKindNames, text);
-  if (found == kSpringKindNames.end()) refuse(key + ".kind", text, "must be structural, shear or bend", "leave it out for all");
-  return static_cast<SpringKind>(found - kSpringKindNames.begin());
-}
-
-void write_springs(const std::string& key, const py::object& value, const std::vector<std::size_t>& springs,
-                   std::vector<double>& numbers) {
-  if (value.is_none()) return;
-  const std::vector<double> wanted = numbers_of(value, key, static_cast<Index>(springs.size()));
-  for (std::size_t k = 0; k < springs.size(); ++k) {
-    if (!(wanted[k] >= 0.0) || !std::isfinite(wanted[k])) {
-      refuse(key + "[" + std::to_string(k) + "]", format_number(wanted[k]), "must be finite and not negative", "give 0 for none");
-    }
-    numbers[springs[k]] = wanted[k];
-  }
-}
-
 /// The same part of a copy of its simulator. A structure that is copied as a whole gets one copy of each simulator.
 template <class Part>
 Part deep_copy(const Part& part, const py::dict& memo) {
@@ -192,31 +163,6 @@ py::object obstacles_of(const Shared& simulator) {
   const std::vector<Obstacle>& obstacles = simulator->peek().obstacles();
   for (std::size_t k = 0; k < obstacles.size(); ++k) parts[py::str(obstacles[k].name)] = ObstaclePart{simulator, k};
   return read_only(parts);
-}
-
-void set_springs(const Shared& simulator, std::string body, const py::object& stiffness, const py::object& damping,
-                 const py::object& kind) {
-  simulator->change([&](Simulator& changed) {
-    SpringNetwork network = changed.model()->network();
-    const auto its = std::ranges::find(network.bodies, body, &Body::name);
-    const std::string key = "bodies." + body + ".springs";
-    if (its == network.bodies.end()) refuse("bodies." + body, "", "is no body of the simulator", "see simulator.bodies");
-    const std::vector<std::size_t> springs = springs_left(changed, *its, kind_of(kind, key));
-    if (springs.empty()) refuse(key, "", "has no springs of this kind", "build the body with some");
-    write_springs(key + ".stiffness", stiffness, springs, network.springs.stiffness);
-    write_springs(key + ".damping", damping, springs, network.springs.damping);
-    changed.continue_with(std::move(network), changed.settings());
-  });
-  const auto plain = [](const py::object& value) {
-    return value.is_none() ? value : py::module_::import("numpy").attr("asarray")(value).attr("tolist")();
-  };
-  py::dict log;
-  log["do"] = "set_springs";
-  log["body"] = body;
-  log["stiffness"] = plain(stiffness);
-  log["damping"] = plain(damping);
-  log["kind"] = kind;
-  simulator->changes().push_back(py::module_::import("json").attr("dumps")(log).cast<std::string>());
 }
 
 void bind_parts(py::module_& module) {

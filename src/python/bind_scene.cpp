@@ -1,9 +1,9 @@
 #include "base/format.h"
-#include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/errors.h"
-#include "python/saved_simulator.h"
-#include "python/scene_origin.h"
+#include "python/simulator/arrays.h"
+#include "python/simulator/errors.h"
+#include "python/simulator/saved_simulator.h"
+#include "python/simulator/scene_origin.h"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

@@ -1,10 +1,10 @@
 #include "collision/shapes/obstacle.h"
 #include "geometry/import/mesh_import.h"
 #include "network/bodies/body_shape.h"
-#include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/errors.h"
 #include "python/shape_arguments.h"
+#include "python/simulator/arrays.h"
+#include "python/simulator/errors.h"
 
 #include <pybind11/stl.h>
 

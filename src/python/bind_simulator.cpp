@@ -1,13 +1,14 @@
 #include "base/format.h"
 #include "collision/obstacles/obstacle_frame.h"
 #include "dynamics/state/simulation_state.h"
-#include "python/arrays.h"
-#include "python/batch.h"
 #include "python/bindings.h"
-#include "python/errors.h"
 #include "python/fast_step.h"
 #include "python/parts.h"
-#include "python/saved_simulator.h"
+#include "python/simulator/arrays.h"
+#include "python/simulator/batch.h"
+#include "python/simulator/changes.h"
+#include "python/simulator/errors.h"
+#include "python/simulator/saved_simulator.h"
 #include "simulation/checkpoint.h"
 #include "simulation/model.h"
 
@@ -116,15 +117,6 @@ py::array forces(ScriptedSimulator& simulator) {
                   {{"name", column.dtype(), column}, {"force", py::make_tuple("f8", py::make_tuple(3)), copy_of(means)}});
 }
 
-void set_gravity(ScriptedSimulator& simulator, const py::object& value) {
-  const Vector3 gravity = vector_of(value, "gravity");
-  simulator.change([&](Simulator& changed) { changed.set_gravity(gravity); });
-  py::dict log;
-  log["do"] = "set_gravity";
-  log["gravity"] = std::vector<double>(gravity.begin(), gravity.end());
-  simulator.changes().push_back(py::module_::import("json").attr("dumps")(log).cast<std::string>());
-}
-
 /// The particle of a body, in the numbering of the network.
 Index particle_of(const SpringNetwork& network, const std::string& name, Index particle) {
   const auto body = std::ranges::find(network.bodies, name, &Body::name);
@@ -153,16 +145,6 @@ void release(ScriptedSimulator& simulator, const std::string& body, const py::ob
     for (const Index i : numbers) freed.push_back(particle_of(changed.network(), body, i));
     for (const Index i : freed) changed.release(i);
   });
-}
-
-void remove_force(ScriptedSimulator& simulator, const py::object& function) {
-  auto& added = simulator.added_forces();
-  const auto found = std::ranges::find_if(added, [&](const auto& each) { return each.function.equal(function); });
-  if (found == added.end()) {
-    refuse("added force", py::str(function).cast<std::string>(), "was not added", "give the function that was");
-  }
-  simulator.change([&](Simulator& changed) { changed.remove_force(*found->force); });
-  added.erase(found);
 }
 
 std::string text_of(ScriptedSimulator& simulator) {
@@ -198,12 +180,21 @@ Simulator.restore continues from it, bit by bit. It never changes.)")
           "Equal states have the same number.");
 }
 
-void bind_batch(py::module_& module) {
-  py::class_<Batch>(module, "Batch", R"(Batch(simulators)
---
+Batch batch_of(const py::iterable& simulators) {
+  std::vector<Shared> all;
+  for (const py::handle& each : simulators) {
+    if (!py::isinstance<ScriptedSimulator>(each)) {
+      refuse("simulators[" + std::to_string(all.size()) + "]", type_name(each), "must be a Simulator",
+             "make it by sprung.load(scene).simulator()");
+    }
+    all.push_back(each.cast<Shared>());
+  }
+  return Batch(std::move(all));
+}
 
-Many simulators that step at once, on all cores. Each gets the same bits as alone.)")
-      .def(py::init<std::vector<Shared>>(), py::arg("simulators"))
+void bind_batch(py::module_& module) {
+  py::class_<Batch>(module, "Batch", "Many simulators that step at once, on all cores. Each gets the same bits as alone.")
+      .def(py::init(&batch_of), py::arg("simulators"), "__init__(self, simulators)\n--\n\nOf a list of simulators, each once.")
       .def("step", &Batch::step, py::arg("steps") = 1, R"(step(self, steps=1)
 --
 
@@ -220,15 +211,7 @@ void bind_simulator(py::module_& module) {
   bind_state(module);
   py::class_<ScriptedSimulator, Shared> simulator(
       module, "Simulator",
-      R"(Simulator(network, *, step=0.001, steps_per_frame=1, gravity=(0, -9.81, 0), integrator="verlet", obstacles=(), record_forces=False,
-          sleep=True)
---
-
-A simulation that steps, made by Scene.simulator(), by sprung.restore(), or of a Network.
-
-step [s], gravity [m/s^2]; integrator: explicit_euler, symplectic_euler, verlet, velocity_verlet, runge_kutta_4 or
-implicit_euler; obstacles: a list of ObstacleShape. record_forces: for forces(). sleep: bodies at rest cost nothing. Raises
-InputError for a step that is too large.
+      R"(A simulation that steps, made by Scene.simulator(), by sprung.restore(), or of a Network.
 
 Steps run without the interpreter's lock, so several threads may step several simulators. A simulator that is stepping is
 refused to other threads, by RuntimeError. It cannot be pickled: a process loads its scene itself, or a file of save().)");

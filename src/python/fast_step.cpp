@@ -1,7 +1,7 @@
 #include "python/fast_step.h"
 
-#include "python/errors.h"
-#include "python/scripted_simulator.h"
+#include "python/simulator/errors.h"
+#include "python/simulator/scripted_simulator.h"
 
 #include <exception>
 

@@ -1,6 +1,6 @@
 # The package `sprung`: Python sources, and the extension module sprung._core. It lies ready to use in <build folder>/python.
 set(python_package ${PROJECT_BINARY_DIR}/python/sprung)
-file(GLOB python_sources CONFIGURE_DEPENDS python/*.cpp)
+file(GLOB python_sources CONFIGURE_DEPENDS python/*.cpp python/simulator/*.cpp)
 if(SPRUNG_VIEWER)
   list(FILTER python_sources EXCLUDE REGEX "/no_show.cpp$")
 else()

@@ -1,6 +1,6 @@
 // The module of a build without the viewer.
 #include "python/bindings.h"
-#include "python/scripted_simulator.h"
+#include "python/simulator/scripted_simulator.h"
 
 #include <memory>
 #include <stdexcept>

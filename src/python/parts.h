@@ -1,14 +1,14 @@
 // Bodies, pins and obstacles of a simulator, by number. They keep the simulator alive.
 #pragma once
 
-#include "python/scripted_simulator.h"
+#include "python/simulator/scripted_simulator.h"
+
+#include <pybind11/numpy.h>
 
 #include <memory>
 #include <string>
 
 namespace sprung::python {
-
-using Shared = std::shared_ptr<ScriptedSimulator>;
 
 struct BodyPart {
   Shared simulator;
@@ -38,9 +38,5 @@ struct SpringTable {
 [[nodiscard]] pybind11::object bodies_of(const Shared& simulator);
 [[nodiscard]] pybind11::object pins_of(const Shared& simulator);
 [[nodiscard]] pybind11::object obstacles_of(const Shared& simulator);
-
-/// Gives springs of a body other stiffness [N/m] and damping [N s/m], as a new model. None keeps them; `kind` None: of all kinds.
-void set_springs(const Shared& simulator, std::string body, const pybind11::object& stiffness, const pybind11::object& damping,
-                 const pybind11::object& kind);
 
 }  // namespace sprung::python

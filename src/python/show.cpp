@@ -1,6 +1,7 @@
 #include "base/error.h"
 #include "python/bindings.h"
-#include "python/scripted_simulator.h"
+#include "python/simulator/interpreter.h"
+#include "python/simulator/scripted_simulator.h"
 #include "viewer/page.h"
 #include "viewer/request_check.h"
 #include "viewer/server.h"
@@ -35,7 +36,7 @@ class Viewer {
   void close() {
     is_closed_ = true;
     simulator_->on_step({});
-    const py::gil_scoped_release release;
+    const WithoutLock without_lock;
     if (thread_.joinable()) thread_.join();
   }
 

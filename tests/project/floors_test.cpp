@@ -76,6 +76,8 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
 
     {"app/text", {}},
 
+    {"python/simulator", {}},
+
     {"scene/format", {}},
     {"scene/json", {}},
     {"scene/materials", {}},

@@ -6,7 +6,7 @@ import unittest
 import numpy
 
 import sprung
-from common import cloth, rope, simulator
+from common import cloth, example, rope, simulator
 
 
 class Saved(unittest.TestCase):
@@ -40,6 +40,20 @@ class Saved(unittest.TestCase):
         for each in (one, twin):
             each.pins["finger"].move_to(each.pins["finger"].position + [0, 0.01, 0])
             each.step(30)
+        self.assertEqual(twin.state(), one.state())
+
+    def test_restore_repeats_springs_that_were_set_after_others_broke(self):
+        one = simulator(example("torn_cloth"))
+        body = next(iter(one.bodies.values()))
+        count = len(body.springs)
+        while len(body.springs) == count:
+            one.step(20)
+        body.set_springs(stiffness=0.9 * body.springs.stiffness)
+        one.save(self.path)
+        twin = sprung.restore(self.path)
+        numpy.testing.assert_array_equal(next(iter(twin.bodies.values())).springs.stiffness, body.springs.stiffness)
+        for each in (one, twin):
+            each.step(20)
         self.assertEqual(twin.state(), one.state())
 
     def test_added_forces_are_given_again(self):

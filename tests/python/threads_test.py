@@ -1,6 +1,8 @@
 """Laws of batches, threads and signals."""
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -83,8 +85,9 @@ class Batches(unittest.TestCase):
 
     def test_a_simulator_is_there_once(self):
         one = simulator(rope())
-        with self.assertRaises(sprung.InputError):
-            sprung.Batch([one, one])
+        for wrong in ([one, one], [one, None], [3]):
+            with self.assertRaises(sprung.InputError):
+                sprung.Batch(wrong)
 
 
 class Threads(unittest.TestCase):
@@ -113,6 +116,23 @@ class Threads(unittest.TestCase):
         worker.join()
         self.assertGreater(refused, 0)
         one.step()
+
+
+class Exit(unittest.TestCase):
+    def test_a_thread_that_still_steps_ends_with_the_program(self):
+        program = """
+import threading, sys, time
+from common import cloth, simulator
+one = simulator(cloth(16))
+if sys.argv[1] == "force":
+    one.add_force(lambda x, v, t: 0 * x)
+threading.Thread(target=lambda: [one.step(3) for _ in range(10 ** 9)], daemon=True).start()
+time.sleep(0.2)
+print("leaving")
+"""
+        for what in ("force", "none"):
+            done = subprocess.run([sys.executable, "-c", program, what], capture_output=True, text=True, timeout=60)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "leaving\n", ""))
 
 
 class Signals(unittest.TestCase):

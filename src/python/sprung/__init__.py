@@ -17,10 +17,17 @@ SI units throughout: m, kg, s, N. The y axis points up. Arrays of points have a 
   make_sphere(), make_box(), make_ground() and make_mesh_obstacle() as obstacles.
 - InputError, StepError, FileError, SprungWarning: what goes wrong, and the remedy.
 """
+try:
+    from ._core import version as __version__
+except ModuleNotFoundError as error:
+    if error.name != "sprung._core":
+        raise
+    import sys as _sys
+    raise ImportError(f"sprung was not built for this Python, {_sys.version.split()[0]} of {_sys.executable}; use the Python for which "
+                      "it was built (on Debian /usr/bin/python3), or build it with -DPython_EXECUTABLE=PATH") from error
 from ._core import (Batch, Body, BodyShape, Network, NetworkBuilder, Obstacle, ObstacleShape, Pin, Scene, Simulator, Springs, State,
                     Viewer, make_box, make_cloth, make_ground, make_mesh, make_mesh_obstacle, make_rope, make_solid, make_sphere,
                     restore, show)
-from ._core import version as __version__
 from ._errors import FileError, InputError, Problem, SprungWarning, StepError
 from ._scene import load
 

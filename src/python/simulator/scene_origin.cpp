@@ -1,6 +1,7 @@
-#include "python/scene_origin.h"
+#include "python/simulator/scene_origin.h"
 
 #include "base/error.h"
+#include "python/simulator/interpreter.h"
 #include "scene/building/mesh_finder.h"
 
 #include <pybind11/pybind11.h>
@@ -22,7 +23,7 @@ void replace(std::string& text, std::string_view option, std::string_view argume
 }  // namespace
 
 LoadedScene load_in_python(const SceneSource& source) try {
-  const pybind11::gil_scoped_release release;
+  const WithoutLock without_lock;
   return load_scene(source);
 } catch (const InputError& error) {
   std::vector<Problem> problems = error.problems();

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "dynamics/forces/force.h"
-#include "python/frame_warnings.h"
-#include "python/scene_origin.h"
+#include "python/simulator/frame_warnings.h"
+#include "python/simulator/scene_origin.h"
 #include "simulation/diagnostics.h"
 #include "simulation/simulator.h"
 
@@ -11,7 +11,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -71,8 +72,8 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
 
   [[nodiscard]] const std::shared_ptr<const SceneOrigin>& origin() const { return origin_; }
 
-  /// Changes since the scene was loaded that a checkpoint lacks, as JSON texts, in order.
-  [[nodiscard]] std::vector<std::string>& changes() { return changes_; }
+  /// What changed since the scene was loaded and a checkpoint lacks: the present values as JSON texts, by names.
+  [[nodiscard]] std::map<std::string, std::string>& changes() { return changes_; }
 
   /// Called after each call that stepped, with the interpreter's lock.
   void on_step(std::function<void(const Simulator&)> show) { show_ = std::move(show); }
@@ -112,7 +113,7 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
   bool is_owned_ = false;                 ///< by this one alone, and it asks this one whether to stop
   std::shared_ptr<const SceneOrigin> origin_;
   std::vector<Added> added_;
-  std::vector<std::string> changes_;
+  std::map<std::string, std::string> changes_;
   std::function<void(const Simulator&)> show_;
   FrameWarnings warnings_;
   bool is_shared_ = false;  ///< whether the program has an array
@@ -125,5 +126,7 @@ class ScriptedSimulator : public std::enable_shared_from_this<ScriptedSimulator>
   int until_clock_ = 0;      ///< calls
   std::optional<pybind11::error_already_set> signal_;
 };
+
+using Shared = std::shared_ptr<ScriptedSimulator>;
 
 }  // namespace sprung::python

@@ -1,7 +1,7 @@
 // Simulators in files: a checkpoint, and the scene that it belongs to.
 #pragma once
 
-#include "python/scripted_simulator.h"
+#include "python/simulator/scripted_simulator.h"
 
 #include <filesystem>
 #include <memory>
@@ -17,12 +17,7 @@ void load_state(ScriptedSimulator& simulator, const std::filesystem::path& file)
 
 /// A simulator as save() wrote it. `forces` are the functions that it had added, in order; `mesh_paths` are further folders of
 /// meshes. Throws InputError if a mesh or a function is missing or another one, or if the simulator had no scene.
-[[nodiscard]] std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file,
-                                                         const std::vector<pybind11::function>& forces,
-                                                         const std::vector<std::filesystem::path>& mesh_paths);
-
-/// Adds a force of a Python function: of one body, or of all particles if there is none.
-void add_force(const std::shared_ptr<ScriptedSimulator>& simulator, const pybind11::function& function,
-               const pybind11::object& body);
+[[nodiscard]] Shared restore(const std::filesystem::path& file, const std::vector<pybind11::function>& forces,
+                             const std::vector<std::filesystem::path>& mesh_paths);
 
 }  // namespace sprung::python

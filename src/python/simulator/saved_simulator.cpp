@@ -1,11 +1,11 @@
-#include "python/saved_simulator.h"
+#include "python/simulator/saved_simulator.h"
 
 #include "base/format.h"
 #include "output/run_checkpoint.h"
-#include "python/arrays.h"
-#include "python/errors.h"
-#include "python/parts.h"
-#include "python/python_force.h"
+#include "python/simulator/arrays.h"
+#include "python/simulator/changes.h"
+#include "python/simulator/errors.h"
+#include "python/simulator/interpreter.h"
 #include "simulation/checkpoint.h"
 #include "simulation/model.h"
 
@@ -55,8 +55,7 @@ void expect_same_meshes(const py::dict& saved, const Model& model) {
 }
 
 /// Adds the functions, each to the body of the one that it stands for.
-void add_forces(const std::shared_ptr<ScriptedSimulator>& simulator, const std::vector<py::function>& forces,
-                const std::vector<std::string>& bodies) {
+void add_forces(const Shared& simulator, const std::vector<py::function>& forces, const std::vector<std::string>& bodies) {
   if (forces.size() != bodies.size()) {
     refuse("forces", counted(forces.size(), "function"),
            "must be the functions that the simulator had added, of which there were " + std::to_string(bodies.size()),
@@ -67,23 +66,12 @@ void add_forces(const std::shared_ptr<ScriptedSimulator>& simulator, const std::
   }
 }
 
-void repeat_change(const std::shared_ptr<ScriptedSimulator>& simulator, const std::string& text) {
-  const auto change = json().attr("loads")(text).cast<py::dict>();
-  if (change["do"].cast<std::string>() == "set_gravity") {
-    const Vector3 gravity = vector_of(change["gravity"], "gravity");
-    simulator->change([&](Simulator& changed) { changed.set_gravity(gravity); });
-    simulator->changes().push_back(text);
-  } else {
-    set_springs(simulator, change["body"].cast<std::string>(), change["stiffness"], change["damping"], change["kind"]);
-  }
-}
-
 }  // namespace
 
 void save(ScriptedSimulator& simulator, const std::filesystem::path& file) {
   Checkpoint checkpoint = simulator.read().checkpoint();
   checkpoint.run = scene_of(simulator);
-  const py::gil_scoped_release release;
+  const WithoutLock without_lock;
   write_checkpoint(file, checkpoint);
 }
 
@@ -92,8 +80,8 @@ void load_state(ScriptedSimulator& simulator, const std::filesystem::path& file)
   simulator.change([&](Simulator& changed) { changed.restore(checkpoint); });
 }
 
-std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file, const std::vector<py::function>& forces,
-                                           const std::vector<std::filesystem::path>& mesh_paths) {
+Shared restore(const std::filesystem::path& file, const std::vector<py::function>& forces,
+               const std::vector<std::filesystem::path>& mesh_paths) {
   const Checkpoint checkpoint = read_checkpoint(file);
   if (!checkpoint.run.starts_with(kKind)) {
     throw InputError({.file = file.string(),
@@ -115,25 +103,11 @@ std::shared_ptr<ScriptedSimulator> restore(const std::filesystem::path& file, co
   expect_same_meshes(saved, *loaded.simulator.model());
   const auto origin = origin_of(std::move(source), loaded);
   auto restored = std::make_shared<ScriptedSimulator>(std::move(loaded.simulator), origin);
-  for (const std::string& change : saved["changes"].cast<std::vector<std::string>>()) repeat_change(restored, change);
+  for (const auto& [what, value] : saved["changes"].cast<std::map<std::string, std::string>>())
+    repeat_change(restored, what, value);
   add_forces(restored, forces, saved["forces"].cast<std::vector<std::string>>());
   restored->change([&](Simulator& changed) { changed.restore(checkpoint); });
   return restored;
-}
-
-void add_force(const std::shared_ptr<ScriptedSimulator>& simulator, const py::function& function, const py::object& body) {
-  const SpringNetwork& network = simulator->peek().network();
-  PythonForce::Range range{.first = 0, .count = network.particle_count()};
-  std::string name;
-  if (!body.is_none()) {
-    name = py::str(body).cast<std::string>();
-    const auto its = std::ranges::find(network.bodies, name, &Body::name);
-    if (its == network.bodies.end()) refuse("bodies." + name, "", "is no body of the simulator", "see simulator.bodies");
-    range = {.first = its->first_particle, .count = its->particle_count};
-  }
-  const auto force = std::make_shared<PythonForce>(function, range, body.is_none());
-  simulator->change([&](Simulator& changed) { changed.add_force(force); });
-  simulator->added_forces().push_back({force, function, name});
 }
 
 }  // namespace sprung::python

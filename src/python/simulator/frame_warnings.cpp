@@ -1,4 +1,4 @@
-#include "python/frame_warnings.h"
+#include "python/simulator/frame_warnings.h"
 
 #include "simulation/simulator.h"
 

@@ -1,7 +1,8 @@
-#include "python/python_force.h"
+#include "python/simulator/python_force.h"
 
-#include "python/arrays.h"
-#include "python/errors.h"
+#include "python/simulator/arrays.h"
+#include "python/simulator/errors.h"
+#include "python/simulator/interpreter.h"
 
 #include <numeric>
 #include <utility>
@@ -16,7 +17,7 @@ PythonForce::PythonForce(py::function function, Range range, bool is_everywhere)
 }
 
 PythonForce::~PythonForce() {
-  const py::gil_scoped_acquire lock;  // a model may be dropped by any thread
+  const WithLock lock;  // a model may be dropped by any thread
   function_ = py::object();
 }
 
@@ -28,7 +29,7 @@ std::optional<std::vector<Index>> PythonForce::touched() const {
 }
 
 void PythonForce::add(const Kinematics& at, Points& forces) const {
-  const py::gil_scoped_acquire lock;
+  const WithLock lock;
   const std::string key = "added force \"" + name_ + "\"";
   const py::object result = function_(copy_of(at.x.middleCols(range_.first, range_.count)),
                                       copy_of(at.v.middleCols(range_.first, range_.count)), at.time);

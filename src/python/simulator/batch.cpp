@@ -1,7 +1,8 @@
-#include "python/batch.h"
+#include "python/simulator/batch.h"
 
 #include "base/parallel_tasks.h"
-#include "python/errors.h"
+#include "python/simulator/errors.h"
+#include "python/simulator/interpreter.h"
 #include "simulation/step/step_report.h"
 
 #include <chrono>
@@ -61,10 +62,10 @@ class Run {
 void run_until_signal(const std::function<void(const std::atomic<bool>& stopped)>& steps) {
   std::optional<py::error_already_set> signal;
   {
-    const py::gil_scoped_release release;
+    const WithoutLock without_lock;
     Run run(steps);
     while (!signal && !run.wait(kSignalInterval)) {
-      const py::gil_scoped_acquire lock;
+      const WithLock lock;
       if (PyErr_CheckSignals() != 0) signal.emplace();
     }
     if (!signal) run.rethrow();
@@ -78,7 +79,6 @@ Batch::Batch(std::vector<std::shared_ptr<ScriptedSimulator>> simulators) : simul
   std::set<const ScriptedSimulator*> known;
   for (std::size_t k = 0; k < simulators_.size(); ++k) {
     const std::string key = "simulators[" + std::to_string(k) + "]";
-    if (!simulators_[k]) refuse(key, "None", "must be a simulator", "leave it out");
     if (!known.insert(simulators_[k].get()).second) refuse(key, "", "is there already", "give each once, or a copy() of it");
   }
 }

@@ -1,4 +1,4 @@
-#include "python/errors.h"
+#include "python/simulator/errors.h"
 
 #include "base/error.h"
 

@@ -1,6 +1,7 @@
-#include "python/scripted_simulator.h"
+#include "python/simulator/scripted_simulator.h"
 
-#include "python/errors.h"
+#include "python/simulator/errors.h"
+#include "python/simulator/interpreter.h"
 #include "simulation/step/step_report.h"
 
 #include <cstring>
@@ -25,17 +26,6 @@ std::int64_t coarse_now() {
   clock_gettime(CLOCK_MONOTONIC_COARSE, &now);
   return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
 }
-
-/// Gives the interpreter's lock back. Cheaper than the one of pybind11, which counts in steps of a short rope.
-class WithoutLock {
- public:
-  WithoutLock() : thread_(PyEval_SaveThread()) {}
-  ~WithoutLock() { PyEval_RestoreThread(thread_); }
-  WithoutLock(const WithoutLock&) = delete;
-
- private:
-  PyThreadState* thread_;
-};
 
 bool are_same_bits(const Points& a, const Points& b) {
   return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
@@ -109,6 +99,7 @@ void ScriptedSimulator::publish() {
 
 /// Whether Ctrl-C, or another signal whose handler raises, or the end of a batch stops the steps.
 bool ScriptedSimulator::is_interrupted() {
+  wait_if_ending();
   if (batch_stopped_ != nullptr) return *batch_stopped_;
   if (signal_) return true;
   if (--until_clock_ > 0) return false;
@@ -117,7 +108,7 @@ bool ScriptedSimulator::is_interrupted() {
   looked_ = now;
   if (now - asked_ < kSignalInterval) return false;
   asked_ = now;
-  const py::gil_scoped_acquire lock;
+  const WithLock lock;
   if (PyErr_CheckSignals() != 0) signal_.emplace();
   return signal_.has_value();
 }

@@ -1,6 +1,6 @@
-#include "python/arrays.h"
+#include "python/simulator/arrays.h"
 
-#include "python/errors.h"
+#include "python/simulator/errors.h"
 
 #include <algorithm>
 #include <cstdint>

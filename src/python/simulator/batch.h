@@ -1,7 +1,7 @@
 // Many simulators at once.
 #pragma once
 
-#include "python/scripted_simulator.h"
+#include "python/simulator/scripted_simulator.h"
 
 #include <cstdint>
 #include <memory>
