@@ -202,10 +202,12 @@ number of an obstacle of the simulator, which the particles follow instead. begi
                break_force=None, begin=0.0, until=None, name="")
 --
 
-Join each particle of first, a number or several, to the nearest of these points when the attachment begins: of particles, of the
-surface of a body (its number, counted from 0 as bodies were added), or of the surface of an obstacle of the simulator (its
-number). Give one of the three. A spring has a stiffness [N/m] and a damping [N s/m]; without a stiffness it is a rod. rest_length
-[m]; None: the distance at the begin. Beyond break_force [N] it breaks; None: never. begin, until [s]: when it holds; None: for ever. The name is that of
+Join each particle of first, a number or several, to the nearest of these points when the attachment begins: of particles, of
+the surface of a body (its number, counted from 0 as bodies were added), or of the surface of an obstacle of the simulator (its
+number). Give one of the three.
+
+A spring has a stiffness [N/m] and a damping [N s/m]; without a stiffness it is a rod. rest_length [m]; None: the distance at the
+begin. Beyond break_force [N] it breaks; None: never. begin, until [s]: when it holds; None: for ever. The name is that of
 Simulator.forces().)")
       .def("build", &NetworkBuilder::build, "build(self)\n--\n\nThe network. Raises InputError that names every problem.");
 }

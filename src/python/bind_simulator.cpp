@@ -261,8 +261,8 @@ free to move.)")
 --
 
 The mean forces [N] of pins on their bodies and of attachments on their first ends, since the begin of the frame or the last
-reset_forces(): a structured array with the fields name (text) and force (3,). Forces on obstacles are not recorded. Raises InputError
-unless the scene has "output": {"forces": true}, or the simulator was made with record_forces=True.)")
+reset_forces(): a structured array with the fields name (text) and force (3,). Forces on obstacles are not recorded. Raises
+InputError unless the scene has "output": {"forces": true}, or the simulator was made with record_forces=True.)")
       .def(
           "reset_forces", [](ScriptedSimulator& self) { self.change([](Simulator& changed) { changed.reset_forces(); }); },
           "reset_forces(self)\n--\n\nBegin a new interval for forces(). frame() does so too.")
@@ -271,11 +271,12 @@ unless the scene has "output": {"forces": true}, or the simulator was made with 
 --
 
 Add an external force. Steps call function(x, v, t) with positions [m] and velocities [m/s] of all particles, or of one body,
-as read-only copies (n, 3), and the time [s]; it returns forces [N], (n, 3). Body.slice has the rows of a body. If it raises, the
-step raises the same exception, and the simulator is at the begin of the step. If it returns another shape, or a number that
-is not finite, the step raises InputError. add_force() calls it too, and does not add it if it fails. It may not use the
-simulator. Runge-Kutta calls it four times a step, and a repeated step calls it again, so it must
-depend on its arguments alone.)")
+as read-only copies (n, 3), and the time [s]; it returns forces [N], (n, 3). Body.slice has the rows of a body.
+
+If it raises, the step raises the same exception, and the simulator is at the begin of the step. If it returns another shape, or a
+number that is not finite, the step raises InputError. add_force() calls it too, and does not add it if it fails. It may not use
+the simulator. Runge-Kutta calls it four times a step, and a repeated step calls it again, so it must depend on its arguments
+alone.)")
       .def("remove_force", &remove_force, py::arg("function"), "remove_force(self, function)\n--\n\nRemove a force that was added.")
       .def("pin", &pin, py::arg("body"), py::arg("particles"), py::arg("name"), R"(pin(self, body, particles, name)
 --
@@ -300,8 +301,8 @@ now. Views show the restored positions. Raises InputError if the state does not 
       .def("copy", &ScriptedSimulator::copy, R"(copy(self)
 --
 
-A simulator that continues as this one would, bit by bit. Both share the model and the added forces. It
-costs next to nothing: the first of both that steps then pays for the copy, as much as a few dozen steps.)")
+A simulator that continues as this one would, bit by bit. Both share the model and the added forces. It costs next to nothing: the
+first of both that steps then pays for the copy, as much as a few dozen steps.)")
       .def("__copy__", &ScriptedSimulator::copy)
       .def(
           "__deepcopy__", [](ScriptedSimulator& self, const py::dict& /*memo*/) { return self.copy(); }, py::arg("memo"))

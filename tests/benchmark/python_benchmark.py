@@ -1,6 +1,6 @@
 """What Python costs, as ratios in one run: python_benchmark.py ROPE_LOOP. Needs PYTHONPATH=BUILD/python:tests/python.
 
-Other programs on the machine disturb a measurement, so the best of several counts."""
+Other programs on the machine disturb a measurement, so the best of several counts, of each side on its own."""
 import json
 import subprocess
 import sys
@@ -19,8 +19,8 @@ def seconds(call):
     return time.perf_counter() - begin
 
 
-def loop_over_cpp(rope_loop):
-    """1000 steps of a rope of 32 particles, over those of a loop in C++."""
+def seconds_of_loops(rope_loop):
+    """1000 steps of a rope of 32 particles: in Python, and in C++."""
     scene = rope(32, sleep=False)
     scene["bodies"]["rope"]["pins"] = [{"indices": [0]}]
     with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
@@ -32,29 +32,29 @@ def loop_over_cpp(rope_loop):
     def loop():
         for _ in range(1000):
             one.step()
-    return min(seconds(loop) for _ in range(15)) / cpp
+    return min(seconds(loop) for _ in range(15)), cpp
 
 
-def one_after_the_other_over_batch():
-    """200 steps of 16 small cloths, one after the other, over those of a batch."""
+def seconds_of_many():
+    """200 steps of 16 small cloths, with the copies at their begin: one after the other, and in a batch."""
     scene = sprung.load(cloth(10))
-    together = [scene.simulator() for _ in range(16)]
     alone = [scene.simulator() for _ in range(16)]
-    batch = sprung.Batch(together)
-
-    def one_after_the_other():
-        for one in alone:
-            one.step(200)
-    return seconds(one_after_the_other) / seconds(lambda: batch.step(200))
+    batch = sprung.Batch([scene.simulator() for _ in range(16)])
+    return seconds(lambda: [one.step(200) for one in alone]), seconds(lambda: batch.step(200))
 
 
-def copy_over_step():
-    """A copy of a cloth of 64 x 64 particles, over a step."""
+def seconds_of_copy():
+    """A cloth of 64 x 64 particles: a copy, and a step."""
     one = sprung.load(cloth(64)).simulator()
     one.step(50)
-    return min(seconds(one.copy) for _ in range(5)) / min(seconds(one.step) for _ in range(5))
+    return min(seconds(one.copy) for _ in range(5)), min(seconds(one.step) for _ in range(5))
 
 
-print(f"loop in Python / in C++: {min(loop_over_cpp(sys.argv[1]) for _ in range(ATTEMPTS)):.2f}")
-print(f"one after the other / batch: {max(one_after_the_other_over_batch() for _ in range(ATTEMPTS)):.2f}")
-print(f"copy / step: {min(copy_over_step() for _ in range(ATTEMPTS)):.3f}")
+def ratio_of_best(measure):
+    first, second = zip(*(measure() for _ in range(ATTEMPTS)))
+    return min(first) / min(second)
+
+
+print(f"loop in Python / in C++: {ratio_of_best(lambda: seconds_of_loops(sys.argv[1])):.2f}")
+print(f"one after the other / batch: {ratio_of_best(seconds_of_many):.2f}")
+print(f"copy / step: {ratio_of_best(seconds_of_copy):.4f}")

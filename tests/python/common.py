@@ -3,7 +3,7 @@ import os
 
 import sprung
 
-SOURCE = os.environ["SPRUNG_SOURCE_DIR"]
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 
 
 def example(name):

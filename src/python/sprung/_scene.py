@@ -18,7 +18,9 @@ def plain(value: Any) -> Any:
 
 def load(scene: Union[str, "os.PathLike[str]", Mapping[str, Any]], *, overrides: Optional[Mapping[str, Any]] = None,
          mesh_paths: Union[str, "os.PathLike[str]", Iterable[Union[str, "os.PathLike[str]"]]] = ()) -> "_core.Scene":
-    """Load a scene: a path of a JSON file, or a dict with the same keys.
+    """Load a scene: a path of a JSON file, or a dict with the same keys. Returns a Scene.
+
+    scene.schema.json describes every key; installed, it is in share/sprung. The folder examples has scenes.
 
     overrides: values of keys, ``{"bodies.cloth.mass": 0.3, "step": 0.001}`` (the option ``--set`` of the program).
     mesh_paths: folders in which meshes are looked for, after that of the scene; of a dict, the working directory.
