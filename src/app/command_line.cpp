@@ -27,6 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   sprung info bunny.obj
   sprung view examples/hanging_cloth.json
   sprung view frames
+  sprung view --lesson 3_damping
   sprung export frames --format html
   sprung export frames --format gltf,npz --out elsewhere
   sprung plot frames others --out compared.svg
@@ -70,7 +71,12 @@ class Parser {
     check_formats(export_.formats);
     if (app_.got_subcommand("run")) return run_;
     if (app_.got_subcommand("validate")) return validate_;
-    if (app_.got_subcommand("view")) return view_;
+    if (app_.got_subcommand("view")) {
+      if (view_.scene.file.empty() == view_.lesson.empty()) {
+        throw UsageError("give a scene file, the folder of a run, or --lesson NAME alone; see sprung view --help");
+      }
+      return view_;
+    }
     if (app_.got_subcommand("export")) {
       if (export_.formats.empty()) {
         throw UsageError(fmt::format("--format is required: choose from {}; see sprung export --help", joined(export_formats())));
@@ -131,7 +137,9 @@ class Parser {
 
   void add_view() {
     CLI::App* view = app_.add_subcommand("view", "Shows a scene live in the browser, or replays a run");
-    view->add_option("SCENE|DIR", view_.scene.file, "Scene file, or the folder of a run")->required()->type_name("");
+    view->add_option("SCENE|DIR", view_.scene.file, "Scene file, or the folder of a run")->type_name("");
+    view->add_option("--lesson", view_.lesson, "Shows one of the lessons instead, such as 3_damping; any other name lists them")
+        ->type_name("NAME");
     add_scene_options(view, view_.scene);
     view->add_option("--port", view_.port, "Port to listen on; 0, the default, takes a free one")
         ->check(CLI::Range(0, 65535))

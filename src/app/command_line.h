@@ -34,9 +34,10 @@ struct InfoOptions {
 };
 
 struct ViewOptions {
-  SceneSource scene;  ///< its file may be the folder of a run
-  int port = 0;       ///< 0: any free one
-  std::string token;  ///< empty: a random one
+  SceneSource scene;   ///< its file may be the folder of a run; empty with a lesson
+  std::string lesson;  ///< name of a lesson to open instead
+  int port = 0;        ///< 0: any free one
+  std::string token;   ///< empty: a random one
   std::optional<int> threads;
   bool open = true;  ///< in the browser
 };

@@ -2,6 +2,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/lessons.h"
 #include "app/run_folder.h"
 #include "base/error.h"
 #include "base/files/file_writer.h"
@@ -61,8 +62,10 @@ void print_problems(const std::vector<Problem>& problems) {
   for (const Problem& problem : problems) print_error(to_string(problem));
 }
 
-std::unique_ptr<ViewSession> session_of(const SceneSource& scene) {
+std::unique_ptr<ViewSession> session_of(const ViewOptions& options) {
   std::error_code ignored;
+  SceneSource scene = options.scene;
+  if (!options.lesson.empty()) scene.file = lesson_file(options.lesson);
   check_exists(scene.file);
   if (std::filesystem::is_directory(scene.file, ignored)) {
     auto replay = std::make_unique<ReplaySession>(scene.file);
@@ -76,7 +79,7 @@ std::unique_ptr<ViewSession> session_of(const SceneSource& scene) {
 
 ExitCode view(const ViewOptions& options) {
   const ThreadLimit limit(thread_count(options.threads));
-  const std::unique_ptr<ViewSession> session = session_of(options.scene);
+  const std::unique_ptr<ViewSession> session = session_of(options);
   ViewServer server({.port = static_cast<std::uint16_t>(options.port),
                      .token = options.token.empty() ? random_token() : options.token,
                      .page = viewer_page()},

@@ -83,6 +83,28 @@ TEST_F(View, ServesASceneWithProblemsAndTellsThem) {
   EXPECT_THAT(ending.err, HasSubstr("duration = -1"));
 }
 
+TEST_F(View, OpensALessonByItsNameAndListsThemForAnother) {
+  for (const char* name : {"3_damping", "damping", "3"}) {
+    Program program({"view", "--lesson", name, "--no-open"});
+    EXPECT_TRUE(wait_until([&] { return program.out().ends_with("\n"); })) << name;
+    program.send(SIGINT);
+    EXPECT_EQ(program.wait().code, 0);
+  }
+  const Ending ending = run({"view", "--lesson", "dampling"});
+  EXPECT_EQ(ending.code, 2);
+  EXPECT_THAT(ending.err,
+              MatchesRegex(".*no such lesson; choose from 1_mass_on_a_spring, .*3_damping.*, 6_limit_or_stiff_springs\n"));
+}
+
+TEST_F(View, NeedsASceneOrALesson) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"view"}, {"view", save(rope_scene()), "--lesson", "3"}}) {
+    const Ending ending = run(arguments);
+    EXPECT_EQ(ending.code, 2);
+    EXPECT_THAT(ending.err, HasSubstr("--lesson NAME"));
+  }
+}
+
 TEST_F(View, OpensItsAddressInTheBrowser) {
   const std::filesystem::path opened = scratch_ / "opened";
   const auto environment =
