@@ -44,7 +44,7 @@ int main() {
   TableExporter table({.model = recorder.model(), .frame_rate = 25.0, .frames = 26});
   for (int frame = 1; frame <= 26; ++frame) {
     while (frame > 1 && simulator.time() < (frame - 1) / 25.0 - 1e-9) simulator.step();
-    (void)table.frame({.number = frame, .state = recorder.frame(simulator)});
+    (void)table.frame({.number = frame, .state = sprung::RunRecorder::frame(simulator)});
   }
   for (const sprung::ExportedFile& file : table.end(26)) std::cout << file.bytes;
   return 0;

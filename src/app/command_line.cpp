@@ -140,6 +140,9 @@ class Parser {
     view->add_option("SCENE|DIR", view_.scene.file, "Scene file, or the folder of a run")->type_name("");
     view->add_option("--lesson", view_.lesson, "Shows one of the lessons instead, such as 3_damping; any other name lists them")
         ->type_name("NAME");
+    view->add_option("--save-to", view_.save_to, "Folder that the page may save runs into; by default that of the scene")
+        ->check(CLI::ExistingDirectory)
+        ->type_name("DIR");
     add_scene_options(view, view_.scene);
     view->add_option("--port", view_.port, "Port to listen on; 0, the default, takes a free one")
         ->check(CLI::Range(0, 65535))

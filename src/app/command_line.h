@@ -34,10 +34,11 @@ struct InfoOptions {
 };
 
 struct ViewOptions {
-  SceneSource scene;   ///< its file may be the folder of a run; empty with a lesson
-  std::string lesson;  ///< name of a lesson to open instead
-  int port = 0;        ///< 0: any free one
-  std::string token;   ///< empty: a random one
+  SceneSource scene;    ///< its file may be the folder of a run; empty with a lesson
+  std::string lesson;   ///< name of a lesson to open instead
+  std::string save_to;  ///< folder that the page may save into; empty: that of the scene
+  int port = 0;         ///< 0: any free one
+  std::string token;    ///< empty: a random one
   std::optional<int> threads;
   bool open = true;  ///< in the browser
 };

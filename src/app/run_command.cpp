@@ -10,7 +10,7 @@
 #include "output/exporters/exporter.h"
 #include "output/run_output.h"
 #include "output/run_summary.h"
-#include "scene/building/strength_scatter.h"
+#include "scene/run_facts.h"
 
 #include <fmt/format.h>
 
@@ -64,26 +64,13 @@ void check_formats(const Formats& formats, bool writes_record) {
 }
 
 RunFacts facts_of(const LoadedScene& loaded, const RunOptions& options, const Formats& formats, int threads) {
-  BodyMaterials materials;
-  for (const BodyScene& body : loaded.scene.bodies) {
-    if (!body.preset.empty()) materials[body.name] = body.preset;
-  }
-  return {.scene = loaded.scene.resolved,
-          .frame_rate = loaded.scene.frame_rate,
-          .frames = loaded.frames,
-          .steps_per_frame = loaded.simulator.settings().steps_per_frame,
-          .threads = threads,
-          .stretch_solver = loaded.simulator.stretch_solver(),
-          .seed = uses_seed(loaded.scene) ? std::optional(loaded.scene.settings.seed) : std::nullopt,
-          .adjustments = loaded.adjustments,
-          .warnings = loaded.warnings,
-          .sources = loaded.sources,
-          .scene_file = loaded.scene.file.filename().string(),
-          .materials = std::move(materials),
-          .write_record = loaded.scene.write_record,
-          .formats = exporters_among(formats),
-          .later_formats = has(formats, kHtml) ? Formats{kHtml} : Formats(),
-          .checkpoint_interval = options.checkpoint};
+  RunFacts facts = facts_of(loaded);
+  facts.threads = threads;
+  facts.write_record = loaded.scene.write_record;
+  facts.formats = exporters_among(formats);
+  if (has(formats, kHtml)) facts.later_formats = {kHtml};
+  facts.checkpoint_interval = options.checkpoint;
+  return facts;
 }
 
 void announce(const LoadedScene& loaded) {

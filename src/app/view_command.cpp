@@ -72,7 +72,7 @@ std::unique_ptr<ViewSession> session_of(const ViewOptions& options) {
     warn_of_missing(replay->run());
     return replay;
   }
-  return std::make_unique<LiveSession>(scene, scenes_beside(scene.file), print_problems);
+  return std::make_unique<LiveSession>(scene, scenes_beside(scene.file), print_problems, options.save_to);
 }
 
 }  // namespace

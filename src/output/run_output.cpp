@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/files/file_pattern.h"
 #include "base/files/file_writer.h"
-#include "dynamics/state/simulation_state.h"
 #include "output/diagnostics_csv.h"
 #include "output/forces_csv.h"
 #include "output/output_names.h"
@@ -14,7 +13,6 @@
 #include "simulation/simulator.h"
 
 #include <algorithm>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -31,39 +29,6 @@ constexpr const char* kFailed = "failed";
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-std::vector<NewtonFrom> handed_over(const Simulator& simulator) {
-  std::vector<NewtonFrom> bodies;
-  for (std::size_t b = 0; b < simulator.network().bodies.size(); ++b) {
-    const StretchHandover& handover = simulator.state().limit.handovers[b];
-    if (handover.solved_since) bodies.push_back({.body = simulator.network().bodies[b].name, .step = *handover.solved_since});
-  }
-  return bodies;
-}
-
-/// Adds the faces of bodies that are gone and not yet listed.
-void list_torn(const Simulator& simulator, int frame, std::vector<TornFaces>& torn_faces) {
-  if (simulator.state().springs.broken_count() == 0) return;
-  for (const Body& body : simulator.network().bodies) {
-    std::vector<Index> listed;
-    for (const TornFaces& torn : torn_faces) {
-      if (torn.body == body.name) listed.insert(listed.end(), torn.faces.begin(), torn.faces.end());
-    }
-    std::ranges::sort(listed);
-    TornFaces now{.body = body.name, .frame = frame, .faces = {}};
-    std::ranges::set_difference(body.surface.torn, listed, std::back_inserter(now.faces));
-    if (!now.faces.empty()) torn_faces.push_back(std::move(now));
-  }
-}
-
-std::vector<BrokenAttachment> broken_attachments(const Simulator& simulator) {
-  std::vector<BrokenAttachment> all;
-  for (const BrokenLink& link : simulator.broken_links()) {
-    const Body& body = simulator.network().body_of(link.particle);
-    all.push_back({.name = link.attachment, .body = body.name, .particle = link.particle - body.first_particle, .step = link.step});
-  }
-  return all;
 }
 
 std::optional<RunRecorder> recorder_of(const Simulator& simulator, const RunFacts& facts) {
@@ -98,7 +63,7 @@ RunOutput::RunOutput(OutputFolder folder, const RunFacts& facts, const Simulator
     : RunOutput(facts, simulator, std::move(folder)) {
   if (checkpoint_interval_ > 0.0) identity_ = identity_of(facts.scene, simulator);
   folder_.expect_free(patterns());
-  const std::string head = has_record_ ? encode_head(recorder_->model(), recorder_->frame(simulator)) : "";
+  const std::string head = has_record_ ? encode_head(recorder_->model(), RunRecorder::frame(simulator)) : "";
   if (has_record_) summary_.set_record(fingerprint(head));
   try {
     write_summary(progress_);
@@ -175,33 +140,18 @@ std::vector<std::string> RunOutput::patterns() const {
   return patterns;
 }
 
-/// The progress after one more frame.
-RunProgress RunOutput::progress_with(const Simulator& simulator, const FrameDiagnostics& diagnostics) const {
-  RunProgress next = progress_;
-  ++next.frames_written;
-  next.steps = simulator.state().step;
-  next.substeps += diagnostics.substeps;
-  if (diagnostics.substeps > 0) {
-    next.smallest_step =
-        progress_.substeps > 0 ? std::min(progress_.smallest_step, diagnostics.smallest_step) : diagnostics.smallest_step;
-  }
-  next.limit_solves += diagnostics.limit_solves;
-  next.newton_from = handed_over(simulator);
-  list_torn(simulator, next.frames_written, next.torn_faces);
-  next.broken_attachments = broken_attachments(simulator);
-  return next;
+void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
+  write_frame(output_frame(simulator, diagnostics, progress_, recorder_.has_value()));
 }
 
-void RunOutput::write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics) {
-  RunProgress next = progress_with(simulator, diagnostics);
-  Frame frame{.exported = {.number = next.frames_written},
-              .diagnostics = csv_row(diagnostics),
-              .forces = has_forces_ ? forces_csv_rows(diagnostics.frame, diagnostics.time, simulator.reactions()) : "",
-              .progress = next};
-  if (recorder_) {
-    frame.exported.state = recorder_->frame(simulator);
-    frame.exported.torn = torn_in(recorder_->model(), next.torn_faces, frame.exported.number);
-  }
+void RunOutput::write_frame(OutputFrame output) {
+  output.progress.warnings = progress_.warnings;
+  RunProgress next = output.progress;
+  Frame frame{.exported = {.number = next.frames_written, .state = std::move(output.state)},
+              .diagnostics = std::move(output.diagnostics),
+              .forces = std::move(output.forces),
+              .progress = std::move(output.progress)};
+  if (recorder_) frame.exported.torn = torn_in(recorder_->model(), next.torn_faces, frame.exported.number);
   try {
     worker_.add([this, frame = std::move(frame)] { write(frame); });
   } catch (const FileError&) {  // of a frame before

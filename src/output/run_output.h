@@ -4,6 +4,7 @@
 #include "base/ordered_worker.h"
 #include "output/exporters/exporter.h"
 #include "output/output_folder.h"
+#include "output/output_frame.h"
 #include "output/run_checkpoint.h"
 #include "output/run_recorder.h"
 #include "output/run_summary.h"
@@ -35,6 +36,10 @@ class RunOutput {
   /// Copies the simulator's present state and has it written as the next frame. Waits if the frames before are not yet written.
   /// Requires the simulator of the constructor. Throws FileError if a frame before could not be written.
   void write_frame(const Simulator& simulator, const FrameDiagnostics& diagnostics);
+
+  /// The same for a frame that was copied before, with a record unless the facts ask for none. Its progress goes on from that of
+  /// the frame before.
+  void write_frame(OutputFrame output);
 
   /// Waits until all frames are on the disk. Throws FileError.
   void flush();
@@ -73,7 +78,6 @@ class RunOutput {
   /// Writes nothing yet.
   RunOutput(const RunFacts& facts, const Simulator& simulator, OutputFolder folder);
 
-  [[nodiscard]] RunProgress progress_with(const Simulator& simulator, const FrameDiagnostics& diagnostics) const;
   void write(const Frame& frame);
   void take_back_progress();
   void write_summary(RunProgress& progress);

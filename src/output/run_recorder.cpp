@@ -71,7 +71,7 @@ RunRecorder::RunRecorder(const Simulator& simulator, const ObjSources& sources, 
   for (Index s = 0; s < springs.count(); ++s) model_.springs.ends.col(s) << springs.first[s], springs.second[s];
 }
 
-RecordedFrame RunRecorder::frame(const Simulator& simulator) const {
+RecordedFrame RunRecorder::frame(const Simulator& simulator) {
   const SpringNetwork& network = simulator.network();
   RecordedFrame frame{.time = simulator.time(),
                       .positions = simulator.positions(),

@@ -19,8 +19,8 @@ class RunRecorder {
 
   [[nodiscard]] const RecordedModel& model() const { return model_; }
 
-  /// The present state. Requires the simulator of the constructor.
-  [[nodiscard]] RecordedFrame frame(const Simulator& simulator) const;
+  /// The present state of a simulator.
+  [[nodiscard]] static RecordedFrame frame(const Simulator& simulator);
 
  private:
   RecordedModel model_;

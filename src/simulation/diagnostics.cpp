@@ -2,7 +2,6 @@
 
 #include "collision/obstacles/obstacle_frame.h"
 #include "simulation/simulator.h"
-#include "simulation/step/step_report.h"
 
 #include <algorithm>
 #include <chrono>
@@ -45,7 +44,7 @@ Index inverted_cells(const Simulator& simulator) {
   return count;
 }
 
-FrameDiagnostics present_diagnostics(const Simulator& simulator) {
+FrameDiagnostics diagnostics_without_distance(const Simulator& simulator) {
   FrameDiagnostics diagnostics;
   diagnostics.frame = static_cast<int>(simulator.state().frame) + 1;
   diagnostics.time = simulator.time();
@@ -56,9 +55,31 @@ FrameDiagnostics present_diagnostics(const Simulator& simulator) {
   diagnostics.max_stretch = max_stretch(simulator);
   diagnostics.contacts = simulator.contact_count();
   diagnostics.inverted_cells = inverted_cells(simulator);
+  return diagnostics;
+}
+
+FrameDiagnostics present_diagnostics(const Simulator& simulator) {
+  FrameDiagnostics diagnostics = diagnostics_without_distance(simulator);
   diagnostics.min_distance = simulator.obstacle_frame().min_distance(contact_positions(simulator.network(), simulator.positions()),
                                                                      distance_range(simulator));
   return diagnostics;
+}
+
+void StepSums::add(const StepReport& step) {
+  if (sum_.substeps == 0 || step.substeps > max_substeps_) reason_ = step.reason;
+  max_substeps_ = std::max(max_substeps_, step.substeps);
+  sum_ += step;
+}
+
+void StepSums::write(double step, FrameDiagnostics& diagnostics) const {
+  diagnostics.stretch_excess = sum_.stretch_excess;
+  diagnostics.truncated = sum_.truncated;
+  diagnostics.infeasible = sum_.infeasible;
+  diagnostics.max_infeasible = sum_.max_infeasible;
+  diagnostics.substeps = sum_.substeps;
+  diagnostics.reason = reason_;
+  diagnostics.smallest_step = sum_.substeps > 0 ? step / max_substeps_ : 0.0;
+  diagnostics.limit_solves = sum_.limit_solves;
 }
 
 FrameRunner::FrameRunner(Simulator& simulator) : simulator_(simulator) {}
@@ -68,27 +89,15 @@ FrameDiagnostics FrameRunner::first_frame() const { return present_diagnostics(s
 FrameDiagnostics FrameRunner::next_frame() {
   const auto begin = std::chrono::steady_clock::now();
   simulator_.reset_forces();
-  StepReport all;
-  int max_substeps = 1;
-  PlanReason reason = PlanReason::first;
+  StepSums sums;
   do {
-    const StepReport report = simulator_.step();
-    if (all.substeps == 0 || report.substeps > max_substeps) reason = report.reason;
-    max_substeps = std::max(max_substeps, report.substeps);
-    all += report;
+    sums.add(simulator_.step());
   } while (simulator_.state().step_in_frame != 0);
   simulator_.check();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
 
   FrameDiagnostics diagnostics = present_diagnostics(simulator_);
-  diagnostics.stretch_excess = all.stretch_excess;
-  diagnostics.truncated = all.truncated;
-  diagnostics.infeasible = all.infeasible;
-  diagnostics.max_infeasible = all.max_infeasible;
-  diagnostics.substeps = all.substeps;
-  diagnostics.reason = reason;
-  diagnostics.smallest_step = all.substeps > 0 ? simulator_.settings().step / max_substeps : 0.0;
-  diagnostics.limit_solves = all.limit_solves;
+  sums.write(simulator_.settings().step, diagnostics);
   diagnostics.frame_ms = elapsed.count();
   return diagnostics;
 }

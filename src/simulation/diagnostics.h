@@ -3,6 +3,7 @@
 
 #include "base/types.h"
 #include "dynamics/state/simulation_state.h"
+#include "simulation/step/step_report.h"
 
 #include <cstdint>
 #include <optional>
@@ -48,6 +49,22 @@ struct FrameDiagnostics {
 
 /// Of the present state; what is summed over steps is 0. Costs a search for the obstacle that is nearest to each particle.
 [[nodiscard]] FrameDiagnostics present_diagnostics(const Simulator& simulator);
+
+/// The same without min_distance, and so without that search.
+[[nodiscard]] FrameDiagnostics diagnostics_without_distance(const Simulator& simulator);
+
+/// What the diagnostics of a frame sum over its steps.
+class StepSums {
+ public:
+  void add(const StepReport& step);
+  /// `step`: length of the steps [s].
+  void write(double step, FrameDiagnostics& diagnostics) const;
+
+ private:
+  StepReport sum_;
+  int max_substeps_ = 1;
+  PlanReason reason_ = PlanReason::first;
+};
 
 /// Runs a simulator frame by frame. Keeps a reference to it. Not for several threads at the same time. Beside the steps, a frame
 /// costs a search for the obstacle that is nearest to each particle, and one pass over springs and cells.

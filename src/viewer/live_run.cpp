@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
@@ -93,13 +94,16 @@ const SceneSource& read_text(SceneSource& source) {
 }  // namespace
 
 // The text is read once, so that a file that changes meanwhile does not change the run.
-LiveRun::LiveRun(SceneSource source) : source_(std::move(source)), loaded_(load_scene(read_text(source_))) {}
+LiveRun::LiveRun(SceneSource source) : source_(std::move(source)), loaded_(load_scene(read_text(source_))) {
+  recording_.begin(simulator(), hand_);
+}
 
-std::string LiveRun::changed_scene() const {
+std::string LiveRun::changed_scene(const std::string& initial_state) const {
   JsonText json = parse_json(scene_text(source_), source_.file);
   std::vector<Problem> problems;
   for (const std::string& change : source_.overrides) apply_override(change, json.document, problems);
-  add_pins(simulator().network(), pinned_, json.document);
+  add_pins(simulator().network(), hand_.pinned, json.document);
+  if (!initial_state.empty()) json.document["initial_state"] = initial_state;
   return json_text(json.document);
 }
 
@@ -135,6 +139,7 @@ bool LiveRun::continue_with(const PreparedScene& changed, const std::vector<std:
     if (steps_change) {
       drop(false);  // the force of the hand is stable for the step that it was made for
       finish_frame();
+      recording_.forget_states();
     }
     simulator.continue_with(built.network, steps_change ? built.settings : with_steps_of(simulator.settings(), built.settings));
   }
@@ -161,8 +166,7 @@ void LiveRun::finish_frame() {
 
 void LiveRun::begin_anew(LoadedScene loaded) {
   if (!have_same_bodies(loaded.simulator.network(), simulator().network())) {
-    pinned_.clear();
-    released_.clear();
+    hand_ = {};
   }
   loaded_ = std::move(loaded);
   failure_.reset();
@@ -171,12 +175,13 @@ void LiveRun::begin_anew(LoadedScene loaded) {
   infeasible_ = 0;
   loaded_.simulator.stop_when(stops_);
   restore_pins();
+  recording_.begin(simulator(), hand_);
 }
 
 /// A pin that the changed scene cannot do without stays.
 void LiveRun::restore_pins() {
-  for (const Index i : pinned_) loaded_.simulator.pin(i);
-  std::erase_if(released_, [&](Index i) {
+  for (const Index i : hand_.pinned) loaded_.simulator.pin(i);
+  std::erase_if(hand_.released, [&](Index i) {
     try {
       loaded_.simulator.release(i);
       return false;
@@ -188,20 +193,44 @@ void LiveRun::restore_pins() {
 
 void LiveRun::keep_pins(const LiveRun& other) {
   if (!have_same_bodies(simulator().network(), other.simulator().network())) return;
-  pinned_ = other.pinned_;
-  released_ = other.released_;
+  hand_ = other.hand_;
   restore_pins();
+  recording_.begin(simulator(), hand_);
 }
 
 void LiveRun::reset() { begin_anew(load_scene(source_)); }
 
 void LiveRun::step() {
   if (failure_) return;
+  const auto begin = std::chrono::steady_clock::now();
   try {
-    infeasible_ = loaded_.simulator.step().infeasible;
+    Simulator& simulator = loaded_.simulator;
+    if (simulator.settings().record_forces && simulator.state().step_in_frame == 0) simulator.reset_forces();
+    const StepReport report = simulator.step();
+    infeasible_ = report.infeasible;
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
+    recording_.add_step(simulator, report, elapsed.count(), hand_);
   } catch (const StepError& error) {
     failure_ = error.failure();
   }
+}
+
+bool LiveRun::go_back(double time) {
+  std::optional<LiveRecording::Past> past = recording_.state_near(time);
+  if (!past) return false;
+  const std::optional<StepFailure> failure = std::exchange(failure_, std::nullopt);
+  drop(false);
+  past->state.added_forces = 0;  // the pull has ended
+  try {
+    loaded_.simulator.restore(past->state);
+  } catch (const InputError&) {
+    failure_ = failure;
+    throw;
+  }
+  recording_.cut_after(past->state.frame);
+  hand_ = std::move(past->pins);
+  infeasible_ = 0;
+  return true;
 }
 
 void LiveRun::stop_when(std::function<bool()> stops) {
@@ -233,14 +262,14 @@ void LiveRun::drop(bool pin) {
   loaded_.simulator.remove_force(*pull);
   if (!pin) return;
   loaded_.simulator.pin(pulled_);
-  pinned_.insert(pulled_);
-  released_.erase(pulled_);
+  hand_.pinned.insert(pulled_);
+  hand_.released.erase(pulled_);
 }
 
 void LiveRun::release(Index particle) {
   if (!may_change(particle)) return;
   loaded_.simulator.release(particle);
-  if (pinned_.erase(particle) == 0) released_.insert(particle);
+  if (hand_.pinned.erase(particle) == 0) hand_.released.insert(particle);
 }
 
 Topology LiveRun::topology() const { return topology_of(simulator()); }

@@ -3,12 +3,13 @@
 
 #include "dynamics/forces/pull_force.h"
 #include "scene/load_scene.h"
+#include "viewer/live_recording.h"
 #include "viewer/message.h"
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,14 @@ class LiveRun {
   [[nodiscard]] const Simulator& simulator() const { return loaded_.simulator; }
   [[nodiscard]] const std::optional<StepFailure>& failure() const { return failure_; }
 
-  /// The scene as its author wrote it, with the changes, as JSON text.
-  [[nodiscard]] std::string changed_scene() const;
+  /// The scene as its author wrote it, with the changes, as JSON text. With an `initial_state`, it begins from the run in that
+  /// folder, whose path counts from the scene's folder.
+  [[nodiscard]] std::string changed_scene(const std::string& initial_state = "") const;
+
+  /// See LiveRecording::save().
+  void save(const std::filesystem::path& folder) const { recording_.save(folder, loaded_, failure_); }
+  /// The number of frames that save() writes.
+  [[nodiscard]] std::size_t saved_frames() const { return recording_.frames(); }
 
   /// Takes the pins that the hand set and freed in another run of the same bodies, at the start of this one.
   void keep_pins(const LiveRun& other);
@@ -42,6 +49,11 @@ class LiveRun {
   /// One step. Does nothing after a divergence, which failure() then describes. Throws StoppedError if `stops` says so.
   void step();
   void stop_when(std::function<bool()> stops);
+
+  /// Goes back to the frame nearest to a time [s] whose state was kept, with the pins that the hand had set by then. Returns
+  /// whether there is one. Throws InputError if its state does not fit the scene as it was changed since; the run then stays where
+  /// it is.
+  bool go_back(double time);
 
   // These do nothing after a divergence, or if there is no such particle.
 
@@ -74,9 +86,8 @@ class LiveRun {
   std::shared_ptr<PullForce> pull_;
   Index pulled_ = kNone;
   Index infeasible_ = 0;  ///< in the last step
-  // By the hand.
-  std::set<Index> pinned_;
-  std::set<Index> released_;
+  HandPins hand_;
+  LiveRecording recording_;
 };
 
 }  // namespace sprung

@@ -1,9 +1,11 @@
 #include "viewer/live_session.h"
 
 #include "base/error.h"
+#include "base/format.h"
 #include "output/exporters/exporter.h"
 #include "output/run_recorder.h"
 #include "scene/reading/scene_reader.h"
+#include "viewer/saving.h"
 
 #include <nlohmann/json.hpp>
 
@@ -50,8 +52,12 @@ struct LiveSession::Shown {
   double realtime = 0.0;
 };
 
-LiveSession::LiveSession(SceneSource source, std::vector<ExampleScene> examples, TellProblems tell_problems)
-    : first_source_(std::move(source)), examples_(std::move(examples)), tell_problems_(std::move(tell_problems)) {
+LiveSession::LiveSession(SceneSource source, std::vector<ExampleScene> examples, TellProblems tell_problems,
+                         std::filesystem::path save_to)
+    : first_source_(std::move(source)),
+      examples_(std::move(examples)),
+      tell_problems_(std::move(tell_problems)),
+      save_to_(std::move(save_to)) {
   if (!first_source_.text) check_scene_file(first_source_.file);
 }
 
@@ -174,8 +180,9 @@ void LiveSession::obey(ClientId client, const PageCommand& command) {
   } else if (command.name() == "open") {
     open_example(client, command.text("example"));
   } else if (command.name() == "scene") {
-    const Shown& shown = run_of(command);
-    publisher_->tell(client, changed_text(shown.number, shown.run));
+    tell_scene(client, command);
+  } else if (command.name() == "save") {
+    save(client, command);
   } else if (command.name() == "obj") {
     tell_obj(client, run_of(command), command.text("body"));
   } else {
@@ -196,6 +203,8 @@ bool LiveSession::control(const PageCommand& command) {
     advance_frame();
   } else if (name == "reset") {
     reset();
+  } else if (name == "rewind") {
+    go_back(command.number("time"));
   } else if (name == "every") {
     play_.every = static_cast<int>(command.integer("steps", 0, kMostStepsShownAtOnce));
     publish_state();
@@ -340,12 +349,82 @@ void LiveSession::tell_obj(ClientId client, const Shown& shown, const std::strin
   const auto body = std::ranges::find(bodies, body_name, &Body::name);
   if (body == bodies.end()) throw PageCommandError("there is no body " + body_name);
   const RunRecorder recorder(simulator, shown.run.loaded().sources, {});
-  ExportedFrame frame{.state = recorder.frame(simulator)};
+  ExportedFrame frame{.state = RunRecorder::frame(simulator)};
   for (const Body& each : bodies) frame.torn.push_back(each.surface.torn);
   for (const ExportedFile& file : make_exporter("obj", {.model = recorder.model()})->frame(frame)) {
     const bool is_of_body = file.path.starts_with(body_name + "/") && file.path.ends_with(".obj");
     if (is_of_body) publisher_->tell(client, obj_message(body_name + ".obj", file.bytes));
   }
+}
+
+/// Runs without a state near enough go on from the one that they have.
+void LiveSession::go_back(double time) {
+  for (const auto& shown : runs_) {
+    attempt(shown->number, "", [&] {
+      const bool had_diverged = shown->run.failure().has_value();
+      if (!shown->run.go_back(time)) return;
+      shown->measured_from = {};
+      const bool same_springs = shown->run.simulator().state().springs.broken_count() == shown->broken_springs;
+      if (had_diverged || !same_springs) return begin_run(shown->number, true);
+      publish_frame(*shown);
+    });
+  }
+  if (runs_.empty()) return;
+  const LiveRun& first = runs_.front()->run;
+  const double frame = first.simulator().settings().step * first.simulator().settings().steps_per_frame;
+  if (first.simulator().time() > time + frame) {
+    publisher_->tell_all(
+        notice_text("goes on from " + format_number(first.simulator().time(), 4) + " s: the program keeps no earlier state"));
+  }
+}
+
+/// With a `state` the present one is saved under this name, and the scene begins from it.
+void LiveSession::tell_scene(ClientId client, const PageCommand& command) {
+  const Shown& shown = run_of(command);
+  if (!command.has("state")) return publisher_->tell(client, changed_text(shown.number, shown.run));
+  const std::string name = command.text("state");
+  attempt_to_save(client, [&] {
+    const std::filesystem::path folder = new_path(save_folder(), name);
+    shown.run.save(folder);
+    const auto scene_folder = std::filesystem::absolute(shown.run.source().file).parent_path();
+    publisher_->tell(client, changed_text(shown.number, shown.run, folder.lexically_proximate(scene_folder).generic_string()));
+    return saved_text(name, "The present state is in " + folder.string() + ". The scene begins from it.");
+  });
+}
+
+void LiveSession::save(ClientId client, const PageCommand& command) {
+  const LiveRun& run = run_of(command).run;
+  const std::string name = command.text("name");
+  const std::string as = command.text("as");
+  if (as != "run" && as != "page") throw PageCommandError("a run is saved as run or page, not as " + as);
+  attempt_to_save(client, [&] {
+    const std::filesystem::path path = new_path(save_folder(), name, as == "page" ? ".html" : "");
+    std::string frames = counted(run.saved_frames(), "frame");
+    if (run.saved_frames() < run.frame()) frames.insert(0, "Only the first ").append(", as memory ended there,");
+    if (as == "page") {
+      save_page(run, path);
+      return saved_text(name, frames + " are in " + path.string() + ". It plays in any browser.");
+    }
+    run.save(path);
+    return saved_text(name, frames + " are in " + path.string() + ". sprung view and sprung export read this folder.");
+  });
+}
+
+/// Tells the page what `save` says, or why it could not.
+template <class Save>
+void LiveSession::attempt_to_save(ClientId client, const Save& save) try {
+  publisher_->tell(client, save());
+} catch (const InputError& error) {
+  publisher_->tell(client, saved_text("", error.what()));
+} catch (const FileError& error) {
+  publisher_->tell(client, saved_text("", error.what()));
+}
+
+/// Beside the scene, unless another folder was given.
+std::filesystem::path LiveSession::save_folder() const {
+  const std::filesystem::path folder =
+      save_to_.empty() ? std::filesystem::path(runs_.front()->run.source().file).parent_path() : save_to_;
+  return std::filesystem::absolute(folder).lexically_normal();
 }
 
 /// Shows the problems of an action that the scene does not permit.

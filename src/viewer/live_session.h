@@ -31,8 +31,10 @@ class LiveSession final : public ViewSession {
   using TellProblems = std::function<void(const std::vector<Problem>&)>;
 
   /// Throws FileError if the scene cannot be read. Problems of the scene are shown on the page; those of the first attempt to open
-  /// it are also told to `tell_problems`, in the thread of the session.
-  LiveSession(SceneSource source, std::vector<ExampleScene> examples, TellProblems tell_problems = {});
+  /// it are also told to `tell_problems`, in the thread of the session. Pages may save into the folder `save_to`, or, if it is
+  /// empty, into that of the scene.
+  LiveSession(SceneSource source, std::vector<ExampleScene> examples, TellProblems tell_problems = {},
+              std::filesystem::path save_to = {});
   ~LiveSession() override;
 
   [[nodiscard]] std::string hello() const override;
@@ -67,7 +69,13 @@ class LiveSession final : public ViewSession {
   void end_comparison();
   void change(std::optional<std::uint32_t> run, const std::string& key, const std::string& value);
   void drop(bool pin);
+  void go_back(double time);
   void tell_obj(ClientId client, const Shown& shown, const std::string& body_name);
+  void tell_scene(ClientId client, const PageCommand& command);
+  void save(ClientId client, const PageCommand& command);
+  template <class Save>
+  void attempt_to_save(ClientId client, const Save& save);
+  [[nodiscard]] std::filesystem::path save_folder() const;
   template <class Action>
   void attempt(std::optional<std::uint32_t> run, const std::string& key, const Action& action);
   void refuse(std::optional<std::uint32_t> run, const std::string& key, const std::vector<Problem>& problems);
@@ -82,6 +90,7 @@ class LiveSession final : public ViewSession {
   const SceneSource first_source_;
   const std::vector<ExampleScene> examples_;
   TellProblems tell_problems_;  ///< until the scene was opened once
+  const std::filesystem::path save_to_;
   Publisher* publisher_ = nullptr;
 
   // Shared with the server's thread.

@@ -146,8 +146,12 @@ std::string obj_message(const std::string& name, const std::string& text) {
   return text_of({{"type", "obj"}, {"name", name}, {"text", text}});
 }
 
-std::string changed_text(std::uint32_t number, const LiveRun& run) {
-  return text_of({{"type", "changed"}, {"run", number}, {"changed", Json::parse(run.changed_scene())}});
+std::string changed_text(std::uint32_t number, const LiveRun& run, const std::string& initial_state) {
+  return text_of({{"type", "changed"}, {"run", number}, {"changed", Json::parse(run.changed_scene(initial_state))}});
+}
+
+std::string saved_text(const std::string& name, const std::string& text) {
+  return text_of({{"type", "saved"}, {"name", name}, {"text", text}});
 }
 
 std::string notice_text(const std::string& text) { return text_of({{"type", "notice"}, {"text", text}}); }

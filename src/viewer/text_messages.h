@@ -26,7 +26,10 @@ struct PlayState {
                                         const std::vector<Problem>& problems);
 [[nodiscard]] std::string diverged_text(std::uint32_t number, std::uint32_t generation, const LiveRun& run);
 [[nodiscard]] std::string obj_message(const std::string& name, const std::string& text);
-[[nodiscard]] std::string changed_text(std::uint32_t number, const LiveRun& run);
+/// See LiveRun::changed_scene().
+[[nodiscard]] std::string changed_text(std::uint32_t number, const LiveRun& run, const std::string& initial_state = "");
+/// What was saved; without a name, why nothing was.
+[[nodiscard]] std::string saved_text(const std::string& name, const std::string& text);
 /// Something that happened without a command.
 [[nodiscard]] std::string notice_text(const std::string& text);
 [[nodiscard]] std::string error_text(const std::string& text);

@@ -105,6 +105,12 @@ TEST_F(View, NeedsASceneOrALesson) {
   }
 }
 
+TEST_F(View, SavesIntoAFolderThatExists) {
+  const Ending ending = run({"view", save(rope_scene()), "--save-to", out("none")});
+  EXPECT_EQ(ending.code, 2);
+  EXPECT_THAT(ending.err, HasSubstr("none"));
+}
+
 TEST_F(View, OpensItsAddressInTheBrowser) {
   const std::filesystem::path opened = scratch_ / "opened";
   const auto environment =

@@ -151,7 +151,7 @@ TEST(CoarseLattices, HaveTheVerticesFacesAndNormalsOfTheirMeshInFrames) {
   EXPECT_EQ(body.exported_vertex_count(), 4);
   const auto obj_text = [&](const ObjSources& sources) {
     const RunRecorder recorder(simulator, sources, {});
-    return make_exporter("obj", {.model = recorder.model()})->frame({.state = recorder.frame(simulator)}).front().bytes;
+    return make_exporter("obj", {.model = recorder.model()})->frame({.state = RunRecorder::frame(simulator)}).front().bytes;
   };
   EXPECT_EQ(obj_text({}), text);
   const ObjSource source{.file = ObjTemplate(text, ObjTemplate::Normals::per_vertex), .particle_of = {}, .faces = mesh.faces};

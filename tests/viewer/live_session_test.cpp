@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "scene/scene_text.h"
+#include "viewer/rope_scenes.h"
 #include "viewer/test_client.h"
 
 #include <gmock/gmock.h>
@@ -20,21 +21,11 @@ namespace {
 using testing::get;
 using ::testing::HasSubstr;
 using testing::Json;
+using testing::kDivergingScene;
+using testing::kScene;
 using testing::Received;
 using testing::ServingServer;
 using testing::TestPage;
-
-// A rope that hangs from its first particle, and an obstacle below.
-constexpr const char* kScene = R"({"version": 1, "duration": 1, "frame_rate": 50, "step": 0.002,
-  "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
-                      "springs": {"structural": {"stiffness": 100, "damping": 0.1}}, "pins": [{"indices": [0]}]}},
-  "obstacles": {"ball": {"shape": {"type": "sphere", "radius": 0.2}, "place": {"position": [0.5, -2, 0]}}}})";
-
-// The step of 0.02 s is beyond the largest stable one.
-constexpr const char* kDivergingScene = R"({"version": 1, "duration": 10, "frame_rate": 50, "step": 0.02, "stability": "warn",
-  "integrator": {"type": "symplectic_euler"},
-  "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "particles": 11}, "mass": 0.1,
-                      "springs": {"structural": {"stiffness": 10000}}, "pins": [{"indices": [0]}]}}})";
 
 constexpr const char* kHempScene = R"({"version": 1, "duration": 1, "frame_rate": 50,
   "bodies": {"rope": {"shape": {"type": "rope", "from": [0, 0, 0], "to": [0, -1, 0], "particles": 11}, "material": "hemp",

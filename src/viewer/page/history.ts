@@ -22,7 +22,7 @@ export class History {
   private skipped = 0;
 
   add(time: number, numbers: FrameNumbers): void {
-    if (this.times.length > 0 && time < this.times[this.times.length - 1]) this.clear();
+    if (this.times.length > 0 && time < this.times[this.times.length - 1]) this.cut(time);
     if (this.times[this.times.length - 1] === time) return;
     if (this.times.length > 0 && ++this.skipped < this.stride) return;
     this.skipped = 0;
@@ -42,6 +42,14 @@ export class History {
       numbers[4] = numbers[0] + numbers[1] + numbers[2] + numbers[3];
       this.push(row[time] ?? k / frameRate, numbers);
     });
+  }
+
+  /** Forgets what came after a time, as the run went back to it. */
+  private cut(time: number): void {
+    const after = this.times.findIndex((each) => each > time);
+    if (after < 0) return;
+    this.times.length = after;
+    for (const name of QUANTITIES) this.values[name].length = after;
   }
 
   clear(): void {

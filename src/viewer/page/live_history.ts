@@ -12,15 +12,17 @@ export class LiveHistory {
 
   add(header: Header, frame: Frame): void {
     const last = this.newest(header.run);
-    if (last && (header.generation !== last.header.generation || header.time < last.header.time)) this.forget(header.run);
+    if (last && header.generation !== last.header.generation) this.keepOnly(({ header: { run } }) => run !== header.run);
+    // The run went back.
+    else if (last && header.time <= last.header.time) this.keepOnly(({ header: { run, time } }) => run !== header.run || time < header.time);
     const bytes = frame.positions.buffer.byteLength;
     this.kept.push({ header, frame, bytes });
     this.bytes += bytes;
     while (this.bytes > MOST_BYTES || this.kept[0].header.time < header.time - SECONDS) this.bytes -= this.kept.shift()!.bytes;
   }
 
-  forget(run: number): void {
-    this.kept = this.kept.filter(({ header }) => header.run !== run);
+  private keepOnly(wanted: (kept: Kept) => boolean): void {
+    this.kept = this.kept.filter(wanted);
     this.bytes = this.kept.reduce((sum, { bytes }) => sum + bytes, 0);
   }
 

@@ -6,7 +6,7 @@ import { integratorLabel } from './integrators';
 import { LiveHistory } from './live_history';
 import { Notices } from './notices';
 import { Plots } from './plots';
-import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SceneMessage, TextMessage, Topology } from './protocol';
+import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SavedMessage, SceneMessage, TextMessage, Topology } from './protocol';
 import type { Pick } from './picking';
 import { ReplayPlayer } from './replay_player';
 import { particleText, RunModel } from './run_model';
@@ -41,6 +41,7 @@ export class Page implements SourceListener {
   private readonly player: ReplayPlayer;
   private readonly recorder = new Recorder();
   private readonly status = control('status');
+  private readonly saveName = control<HTMLInputElement>('save-name');
   private theme = LIGHT;
   private fitted = '';
   private plotted = { time: 0, stale: true };
@@ -69,7 +70,7 @@ export class Page implements SourceListener {
     this.player = new ReplayPlayer(this.send, (header, frame) => this.showFrame(header, frame));
     this.toolbar = new Toolbar({
       play: (playing) => this.play(playing),
-      step: () => this.send({ do: 'step' }),
+      step: () => this.goOn({ do: 'step' }),
       frame: () => this.singleFrame(),
       reset: () => (this.recorded ? this.player.seek(1) : this.send({ do: 'reset' })),
       fit: (direction) => view.fit(DIRECTIONS[direction]),
@@ -142,6 +143,8 @@ export class Page implements SourceListener {
     } else if (message.type === 'changed') {
       this.sceneWanted?.(message.changed);
       this.sceneWanted = null;
+    } else if (message.type === 'saved') {
+      this.savedRun(message);
     } else if (message.type === 'removed') {
       this.remove(message.run);
     }
@@ -213,6 +216,7 @@ export class Page implements SourceListener {
     this.shown.title = title;
     byId('title').textContent = title;
     this.toolbar.setExample(title);
+    this.saveName.value = `${title.replace(/\.json$/, '').replace(/[^\w-]/g, '_').slice(0, 60)}_1`;
     document.title = title ? `${title} - Sprung` : 'Sprung';
   }
 
@@ -306,7 +310,7 @@ export class Page implements SourceListener {
   }
 
   private play(playing: boolean): void {
-    if (!this.recorded) return this.send({ do: playing ? 'play' : 'pause' });
+    if (!this.recorded) return playing ? this.goOn({ do: 'play' }) : this.send({ do: 'pause' });
     this.player.play(playing);
     this.shown.playing = playing;
     this.toolbar.setPlaying(playing);
@@ -318,7 +322,14 @@ export class Page implements SourceListener {
     else this.lookBack(time);
   }
 
-  /** Shows a frame of the last seconds of a live run. The run itself stays where it is. */
+  /** The run goes on from the frame that is shown, if that is an earlier one. */
+  private goOn(command: Command): void {
+    if (this.looksBack) this.send({ do: 'rewind', time: this.shown.models[0].time });
+    this.looksBack = false;
+    this.send(command);
+  }
+
+  /** Shows a frame of the last seconds of a live run. The run itself stays where it is until it goes on. */
   private lookBack(time: number): void {
     this.shown.models.forEach((model, run) => {
       const found = this.past.at(run, time);
@@ -330,7 +341,7 @@ export class Page implements SourceListener {
   }
 
   private singleFrame(): void {
-    if (!this.recorded) return this.send({ do: 'frame' });
+    if (!this.recorded) return this.goOn({ do: 'frame' });
     this.play(false);
     this.player.seek(1 + (this.player.frame % this.player.frames));
   }
@@ -345,17 +356,29 @@ export class Page implements SourceListener {
         this.showError('this browser cannot record WebM');
       }
     });
+    for (const as of ['run', 'page'] as const) {
+      control(`save-${as}`).addEventListener('click', () => this.send({ do: 'save', run: 0, as, name: this.saveName.value }));
+    }
     control('copy-scene').addEventListener('click', () => this.askScene((scene) => void copyScene(scene)));
     control('save-scene').addEventListener('click', () => {
       this.askScene((scene) => downloadText(this.shown.title || 'scene.json', sceneText(scene)));
     });
   }
 
-  /** Gives `use` the scene with its changes. The program knows the pins that were set since it began. */
+  /** Gives `use` the scene with its changes. The program knows the pins that were set since it began, and saves the state. */
   private askScene(use: (scene: unknown) => void): void {
     if (this.recorded) return use(this.scenes.get(0)?.changed ?? {});
     this.sceneWanted = use;
-    this.send({ do: 'scene', run: 0 });
+    const withState = control<HTMLInputElement>('with-state').checked;
+    this.send({ do: 'scene', run: 0, ...(withState ? { state: this.saveName.value } : {}) });
+  }
+
+  /** After cloth_1 comes cloth_2. */
+  private savedRun({ name, text }: SavedMessage): void {
+    control('saved').textContent = text;
+    if (name === '' || name !== this.saveName.value) return;
+    const [, stem, number] = /^(.*?)(\d*)$/.exec(name)!;
+    this.saveName.value = number ? `${stem}${Number(number) + 1}` : `${stem}_2`;
   }
 
   private tick(now: number): void {
@@ -386,7 +409,7 @@ export class Page implements SourceListener {
     const rates = this.shown.models.map((each) => `${short(each.numbers?.realtime ?? 0, 2)}x`).join(' | ');
     control('realtime').textContent = this.recorded || !this.shown.playing ? '' : rates;
     const infeasible = numbers?.infeasible ? `, ${numbers.infeasible} infeasible` : '';
-    const past = this.looksBack ? ', earlier: play goes on from the end' : '';
+    const past = this.looksBack ? ', earlier: play goes on from here' : '';
     control('readout').textContent = `frame ${model.frame}, ${model.time.toFixed(3)} s${infeasible}${past}`;
   }
 

@@ -49,6 +49,7 @@ export interface DivergedMessage {
 }
 export interface ObjMessage { type: 'obj'; name: string; text: string }
 export interface ChangedMessage { type: 'changed'; run: number; changed: Json }
+export interface SavedMessage { type: 'saved'; name: string; text: string }
 export interface NoticeMessage { type: 'notice'; text: string }
 export interface ErrorMessage { type: 'error'; text: string }
 export interface RemovedMessage { type: 'removed'; run: number }
@@ -60,6 +61,7 @@ export type TextMessage =
   | DivergedMessage
   | ObjMessage
   | ChangedMessage
+  | SavedMessage
   | NoticeMessage
   | ErrorMessage
   | RemovedMessage;
@@ -74,7 +76,9 @@ export type Command =
   | { do: 'grab' | 'release'; run: number; particle: number }
   | { do: 'drag'; target: [number, number, number] }
   | { do: 'drop'; pin: boolean }
-  | { do: 'scene'; run: number }
+  | { do: 'scene'; run: number; state?: string }
+  | { do: 'save'; run: number; as: 'run' | 'page'; name: string }
+  | { do: 'rewind'; time: number }
   | { do: 'obj'; run: number; body: string }
   | { do: 'seek'; frame: number };
 
