@@ -5,6 +5,7 @@
 #include "output/exporters/exporter.h"
 #include "output/run_recorder.h"
 #include "scene/reading/scene_reader.h"
+#include "simulation/tension.h"
 #include "viewer/saving.h"
 
 #include <nlohmann/json.hpp>
@@ -183,6 +184,8 @@ void LiveSession::obey(ClientId client, const PageCommand& command) {
     tell_scene(client, command);
   } else if (command.name() == "save") {
     save(client, command);
+  } else if (command.name() == "tension") {
+    tell_tension(client, command);
   } else if (command.name() == "obj") {
     tell_obj(client, run_of(command), command.text("body"));
   } else {
@@ -376,6 +379,14 @@ void LiveSession::go_back(double time) {
     publisher_->tell_all(
         notice_text("goes on from " + format_number(first.simulator().time(), 4) + " s: the program keeps no earlier state"));
   }
+}
+
+void LiveSession::tell_tension(ClientId client, const PageCommand& command) {
+  const Shown& shown = run_of(command);
+  const Simulator& simulator = shown.run.simulator();
+  const auto spring = static_cast<Index>(command.integer("spring", 0, simulator.network().springs.count() - 1));
+  const bool with_limit = !simulator.settings().stretch_limit || simulator.settings().record_forces;
+  publisher_->tell(client, tension_text(shown.number, spring, spring_tensions(simulator)[spring], with_limit));
 }
 
 /// With a `state` the present one is saved under this name, and the scene begins from it.

@@ -70,6 +70,7 @@ class LiveSession final : public ViewSession {
   void change(std::optional<std::uint32_t> run, const std::string& key, const std::string& value);
   void drop(bool pin);
   void go_back(double time);
+  void tell_tension(ClientId client, const PageCommand& command);
   void tell_obj(ClientId client, const Shown& shown, const std::string& body_name);
   void tell_scene(ClientId client, const PageCommand& command);
   void save(ClientId client, const PageCommand& command);

@@ -150,6 +150,10 @@ std::string changed_text(std::uint32_t number, const LiveRun& run, const std::st
   return text_of({{"type", "changed"}, {"run", number}, {"changed", Json::parse(run.changed_scene(initial_state))}});
 }
 
+std::string tension_text(std::uint32_t run, Index spring, double tension, bool with_limit) {
+  return text_of({{"type", "tension"}, {"run", run}, {"spring", spring}, {"tension", tension}, {"limit", with_limit}});
+}
+
 std::string saved_text(const std::string& name, const std::string& text) {
   return text_of({{"type", "saved"}, {"name", name}, {"text", text}});
 }

@@ -28,6 +28,8 @@ struct PlayState {
 [[nodiscard]] std::string obj_message(const std::string& name, const std::string& text);
 /// See LiveRun::changed_scene().
 [[nodiscard]] std::string changed_text(std::uint32_t number, const LiveRun& run, const std::string& initial_state = "");
+/// Of a spring [N]; `with_limit` says whether the pull of the stretch limit is in it, or there is none.
+[[nodiscard]] std::string tension_text(std::uint32_t run, Index spring, double tension, bool with_limit);
 /// What was saved; without a name, why nothing was.
 [[nodiscard]] std::string saved_text(const std::string& name, const std::string& text);
 /// Something that happened without a command.

@@ -37,6 +37,7 @@ export class BodyView {
   private readonly rope: RopeView | null;
   private readonly springs: LineSegments<BufferGeometry, LineBasicMaterial>;
   private markedSprings: RopeView | null = null;
+  private chosenSpring: { number: number; view: RopeView } | null = null;
   private readonly tubeRadius: number;
   private readonly particles: Dots;
   private readonly pins: Dots;
@@ -117,6 +118,22 @@ export class BodyView {
     if (options.contacts) this.contacts.chooseByState(model.states, IN_CONTACT);
     this.paint(options, theme);
     this.markDivergence(theme);
+    this.chosenSpring?.view.mark(theme.contact);
+    this.chosenSpring?.view.place(model.positions);
+  }
+
+  /** Marks a spring, or none. Returns whether that is another one. */
+  markSpring(number: number | undefined): boolean {
+    if (number === this.chosenSpring?.number) return false;
+    this.chosenSpring?.view.group.removeFromParent();
+    this.chosenSpring?.view.dispose();
+    this.chosenSpring = null;
+    if (number === undefined) return true;
+    const view = new RopeView(this.model.topology.springs.slice(2 * number, 2 * number + 2), 0.7 * this.tubeRadius);
+    view.place(this.model.positions);
+    this.group.add(view.group);
+    this.chosenSpring = { number, view };
+    return true;
   }
 
   markHovered(particle: number | undefined): void {
@@ -140,6 +157,7 @@ export class BodyView {
     this.balls?.dispose();
     this.velocities.dispose();
     this.markedSprings?.dispose();
+    this.chosenSpring?.view.dispose();
     for (const dots of [this.particles, this.pins, this.contacts, this.mark, this.hovered]) dots.dispose();
   }
 

@@ -1,12 +1,14 @@
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
 import { byId, short } from './dom';
-import { pick, project } from './picking';
+import { pick, pickSpring, project } from './picking';
 import type { Pick } from './picking';
 import { PINNED } from './protocol';
 import type { Command } from './protocol';
 import type { SceneView } from './scene_view';
+import type { Selected } from './selection';
 
 const CLICK_PX = 4;
+const ON_PARTICLE_PX = 6;
 
 interface Held extends Pick {
   pointer: number;
@@ -31,6 +33,8 @@ export class Drag {
   enabled = false;
   private held: Held | null = null;
   private pressedPin: Pressed | null = null;
+  /** A spring far from particles: a click selects it, a drag turns the view. */
+  private pressedSpring: (Pressed & Selected) | null = null;
   private hover: { x: number; y: number } | null = null;
   private readonly force = byId('pull-force');
   private readonly raycaster = new Raycaster();
@@ -38,7 +42,7 @@ export class Drag {
   constructor(
     private readonly view: SceneView,
     private readonly send: (command: Command) => void,
-    private readonly notify: { dragged(): void; selected(pick: Pick | null): void },
+    private readonly notify: { dragged(): void; selected(selected: Selected): void },
   ) {
     const { canvas } = view;
     // Before OrbitControls, which listens to the canvas itself.
@@ -71,7 +75,7 @@ export class Drag {
 
   /** The particles are no longer those that were there. */
   cancel(): void {
-    this.pressedPin = null;
+    this.pressedPin = this.pressedSpring = null;
     if (this.held) this.letGo(false);
   }
 
@@ -79,7 +83,11 @@ export class Drag {
     if (!this.enabled || event.button !== 0 || this.held) return;
     const { x, y } = this.at(event);
     const found = pick(this.view, x, y);
-    if (!found) return;
+    if (!found) {
+      const spring = pickSpring(this.view, x, y);
+      this.pressedSpring = spring && { ...spring, pointer: event.pointerId, x, y };
+      return;
+    }
     const run = this.view.runs[found.run];
     if (run.model.states[found.particle] & PINNED) {
       this.pressedPin = { ...found, pointer: event.pointerId, x, y };
@@ -119,14 +127,26 @@ export class Drag {
   private lift(event: PointerEvent): void {
     if (this.held?.pointer === event.pointerId) {
       if (this.held.moved) this.tick();
-      if (!this.held.dragged && event.type === 'pointerup') this.notify.selected({ run: this.held.run, particle: this.held.particle });
+      if (!this.held.dragged && event.type === 'pointerup') this.select(this.held, this.at(event));
       this.letGo(event.type === 'pointerup' && event.shiftKey);
     } else if (this.pressedPin?.pointer === event.pointerId) {
       const { run, particle, x, y } = this.pressedPin;
       const now = this.at(event);
       if (event.type === 'pointerup' && Math.hypot(now.x - x, now.y - y) < CLICK_PX) this.send({ do: 'release', run, particle });
       this.pressedPin = null;
+    } else if (this.pressedSpring?.pointer === event.pointerId) {
+      const { run, particle, spring, x, y } = this.pressedSpring;
+      const now = this.at(event);
+      if (event.type === 'pointerup' && Math.hypot(now.x - x, now.y - y) < CLICK_PX) this.notify.selected({ run, particle, spring });
+      this.pressedSpring = null;
     }
+  }
+
+  /** A particle, and that of its springs on which the pointer is, unless it is on the particle itself. */
+  private select({ run, particle }: Pick, { x, y }: { x: number; y: number }): void {
+    const place = project(this.view, { run, particle })!;
+    const spring = Math.hypot(place.x - x, place.y - y) < ON_PARTICLE_PX ? null : pickSpring(this.view, x, y, particle);
+    this.notify.selected({ run, particle, spring: spring?.spring });
   }
 
   private showForce(newtons: number): void {

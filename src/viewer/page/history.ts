@@ -18,6 +18,8 @@ export class History {
     contacts: [],
     ms: [],
   };
+  /** What a recorded run has no numbers of. */
+  readonly missing = new Set<Quantity>();
   private stride = 1;
   private skipped = 0;
 
@@ -37,6 +39,10 @@ export class History {
     const column = (name: string) => diagnostics.columns.indexOf(name);
     const columns = ['kinetic_energy', 'elastic_energy', 'gravity_energy', 'contact_energy', '', 'max_stretch', 'contacts', 'frame_ms'].map(column);
     const time = column('time');
+    QUANTITIES.forEach((name, k) => {
+      if (columns[k] < 0 && name !== 'total') this.missing.add(name);
+    });
+    if (this.missing.has('kinetic')) this.missing.add('total');
     diagnostics.rows.forEach((row, k) => {
       const numbers = columns.map((index) => row[index] ?? 0);
       numbers[4] = numbers[0] + numbers[1] + numbers[2] + numbers[3];

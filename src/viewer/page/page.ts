@@ -7,12 +7,12 @@ import { LiveHistory } from './live_history';
 import { Notices } from './notices';
 import { Plots } from './plots';
 import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SavedMessage, SceneMessage, TextMessage, Topology } from './protocol';
-import type { Pick } from './picking';
 import { ReplayPlayer } from './replay_player';
-import { particleText, RunModel } from './run_model';
+import { RunModel } from './run_model';
 import { copyScene, downloadText, objText, Recorder, savePicture, sceneText } from './saving';
 import { DIRECTIONS } from './scene_view';
 import type { SceneView } from './scene_view';
+import { Selection } from './selection';
 import { Settings } from './settings';
 import type { Source, SourceListener } from './source';
 import { publish } from './testing';
@@ -49,7 +49,7 @@ export class Page implements SourceListener {
   private readonly past = new LiveHistory();
   /** An earlier frame of a live run is shown. */
   private looksBack = false;
-  private selected: Pick | null = null;
+  private readonly selection: Selection;
   private errorUntil = 0;
   private frameCount = { since: 0, drawn: 0 };
 
@@ -63,9 +63,13 @@ export class Page implements SourceListener {
     });
     this.plots = new Plots(byId('plots'), () => (this.plotted.stale = true), (time) => this.seekTime(time));
     this.panel = new ViewPanel(view);
+    this.selection = new Selection(view, this.send);
     this.drag = new Drag(view, this.send, {
       dragged: () => this.firstDragDone(),
-      selected: (pick) => (this.selected = pick),
+      selected: (pick) => {
+        this.selection.choose(pick);
+        this.plotted.stale = true;
+      },
     });
     this.player = new ReplayPlayer(this.send, (header, frame) => this.showFrame(header, frame));
     this.toolbar = new Toolbar({
@@ -143,6 +147,9 @@ export class Page implements SourceListener {
     } else if (message.type === 'changed') {
       this.sceneWanted?.(message.changed);
       this.sceneWanted = null;
+    } else if (message.type === 'tension') {
+      this.selection.receive(message);
+      this.plotted.stale = true;
     } else if (message.type === 'saved') {
       this.savedRun(message);
     } else if (message.type === 'removed') {
@@ -246,6 +253,7 @@ export class Page implements SourceListener {
       this.coming.delete(header.run);
       model = this.shown.models[header.run] = coming;
       this.view.setRun(header.run, model);
+      this.selection.renumber(header.run);
       this.fitOnce(model);
       this.labelRuns();
     } else if (model?.scene.generation === header.generation) {
@@ -265,7 +273,7 @@ export class Page implements SourceListener {
     const scene = JSON.stringify([bodies, obstacles]);
     if (run !== 0 || scene === this.fitted) return;
     this.fitted = scene;
-    this.selected = null;
+    this.selection.choose(null);
     this.panel.setDefaults(model.topology.particles, model.topology.triangles.length + model.topology.segments.length > 0);
     this.view.draw();
     this.view.fit();
@@ -399,7 +407,8 @@ export class Page implements SourceListener {
     this.plotted = { time: now, stale: false };
     this.plots.draw(this.shown.models, this.recorded || this.looksBack);
     this.showReadout();
-    this.showSelection();
+    // A simulator that a program steps has no scene.
+    this.selection.show(!this.recorded && !this.looksBack && Object.keys(this.shown.models[0]?.scene.scene ?? {}).length > 0);
   }
 
   private showReadout(): void {
@@ -440,14 +449,6 @@ export class Page implements SourceListener {
     } catch {
       // See showHint.
     }
-  }
-
-  private showSelection(): void {
-    const model = this.selected && this.shown.models[this.selected.run];
-    const text = model ? particleText(model, this.selected!.particle) : '';
-    const node = control('selection');
-    if (node.textContent !== text) node.textContent = text;
-    node.hidden = text === '';
   }
 
   private showError(text: string): void {

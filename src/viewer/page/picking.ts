@@ -3,6 +3,8 @@ import type { RunView } from './run_view';
 import type { Rect, SceneView } from './scene_view';
 
 const REACH_PX = 24;
+/** A spring beside the pointer is meant, unless a particle is nearer. */
+const SPRING_REACH_PX = 8;
 const CANDIDATES = 16;
 
 export interface Pick { run: number; particle: number }
@@ -41,6 +43,47 @@ export function pick(view: SceneView, x: number, y: number, hidden = false): Pic
     if (hidden || isVisible(view, run, particle)) return { run: number, particle };
   }
   return null;
+}
+
+/** The spring nearest to a point of the picture, with the nearer of its ends; springs behind something count too. */
+export function pickSpring(view: SceneView, x: number, y: number, particle?: number): (Pick & { spring: number }) | null {
+  const number = runAt(view, x, y);
+  const run = view.runs[number];
+  if (!run) return null;
+  const { springs } = run.model;
+  const places = placesOf(view, number);
+  let best = SPRING_REACH_PX;
+  let found: (Pick & { spring: number }) | null = null;
+  for (let s = 0; 2 * s < springs.length; ++s) {
+    const a = springs[2 * s];
+    const b = springs[2 * s + 1];
+    if (a === b || (particle !== undefined && a !== particle && b !== particle)) continue;
+    const fromX = x - places[2 * a];
+    const fromY = y - places[2 * a + 1];
+    const dx = places[2 * b] - places[2 * a];
+    const dy = places[2 * b + 1] - places[2 * a + 1];
+    const along = Math.min(Math.max((fromX * dx + fromY * dy) / (dx * dx + dy * dy || 1), 0), 1);
+    const distance = Math.hypot(fromX - along * dx, fromY - along * dy);
+    if (!(distance < best)) continue; // one end is behind the camera
+    best = distance;
+    found = { run: number, spring: s, particle: particle ?? (along < 0.5 ? a : b) };
+  }
+  return found;
+}
+
+/** The places of all particles of a run in the picture [pixels]; NaN behind the camera. */
+function placesOf(view: SceneView, number: number): Float32Array {
+  const rect = view.aim(number);
+  const e = projection.multiplyMatrices(view.camera.projectionMatrix, view.camera.matrixWorldInverse).elements;
+  const p = view.runs[number].model.positions;
+  const places = new Float32Array((2 * p.length) / 3).fill(NaN);
+  for (let k = 0, to = 0; k < p.length; k += 3, to += 2) {
+    const w = e[3] * p[k] + e[7] * p[k + 1] + e[11] * p[k + 2] + e[15];
+    if (!(w > 0)) continue;
+    places[to] = rect.x + ((e[0] * p[k] + e[4] * p[k + 1] + e[8] * p[k + 2] + e[12]) / w / 2 + 0.5) * rect.width;
+    places[to + 1] = rect.y + (0.5 - (e[1] * p[k] + e[5] * p[k + 1] + e[9] * p[k + 2] + e[13]) / w / 2) * rect.height;
+  }
+  return places;
 }
 
 /** Particles within reach, the nearest first. */

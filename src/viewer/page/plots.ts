@@ -36,10 +36,12 @@ export interface PlottedRun { history: History; time: number }
 /** The plots that run along. */
 export class Plots {
   private readonly plots: Plot[];
+  private readonly group: HTMLElement;
   private inks: Inks | null = null;
 
   /** `changed` asks for `draw`; `seek` gets the time that was clicked at. */
   constructor(parent: HTMLElement, changed: () => void, seek: (time: number) => void) {
+    this.group = parent.closest('details') ?? parent;
     this.plots = SPECS.map((spec) => new Plot(spec, parent, changed, seek));
   }
 
@@ -52,6 +54,7 @@ export class Plots {
   draw(runs: PlottedRun[], marked: boolean): void {
     this.inks ??= inksOfPage();
     for (const plot of this.plots) plot.draw(runs, marked, this.inks);
+    this.group.hidden = runs.length > 0 && this.plots.every(({ hidden }) => hidden);
   }
 }
 
@@ -67,6 +70,7 @@ interface Curve extends Series { value: HTMLElement; key: HTMLElement; shown: bo
 
 class Plot {
   private readonly canvas: HTMLCanvasElement;
+  private readonly node: HTMLElement;
   private readonly curves: Curve[];
   /** Of the canvas [pixels]; told by the browser, as to ask for it would make the page compute its layout. */
   private width = 0;
@@ -106,6 +110,7 @@ class Plot {
       return curve;
     });
     const plot = element('div', { className: 'plot' }, head, canvas);
+    this.node = plot;
     plot.dataset.testid = spec.id;
     plot.setAttribute('role', 'group');
     plot.setAttribute('aria-label', `Plot: ${spec.title}`);
@@ -130,8 +135,14 @@ class Plot {
     });
   }
 
+  get hidden(): boolean {
+    return this.node.hidden === true;
+  }
+
   draw(runs: PlottedRun[], marked: boolean, inks: Inks): void {
     const { width, height, curves } = this;
+    this.node.hidden = runs.length > 0 && curves.every(({ quantity }) => runs.every(({ history }) => history.missing.has(quantity)));
+    if (this.node.hidden) return;
     const context = this.canvas.getContext('2d');
     if (!context || width <= LEFT + RIGHT) return;
     const ratio = window.devicePixelRatio;

@@ -49,6 +49,8 @@ export interface DivergedMessage {
 }
 export interface ObjMessage { type: 'obj'; name: string; text: string }
 export interface ChangedMessage { type: 'changed'; run: number; changed: Json }
+/** Of a spring [N]; `limit` says whether the pull of the stretch limit is in it, or there is none. */
+export interface TensionMessage { type: 'tension'; run: number; spring: number; tension: number; limit: boolean }
 export interface SavedMessage { type: 'saved'; name: string; text: string }
 export interface NoticeMessage { type: 'notice'; text: string }
 export interface ErrorMessage { type: 'error'; text: string }
@@ -62,6 +64,7 @@ export type TextMessage =
   | ObjMessage
   | ChangedMessage
   | SavedMessage
+  | TensionMessage
   | NoticeMessage
   | ErrorMessage
   | RemovedMessage;
@@ -79,6 +82,7 @@ export type Command =
   | { do: 'scene'; run: number; state?: string }
   | { do: 'save'; run: number; as: 'run' | 'page'; name: string }
   | { do: 'rewind'; time: number }
+  | { do: 'tension'; run: number; spring: number }
   | { do: 'obj'; run: number; body: string }
   | { do: 'seek'; frame: number };
 
@@ -133,7 +137,8 @@ export const TOPOLOGY = 1;
 export const FRAME = 2;
 export const IN_CONTACT = 1;
 export const PINNED = 2;
-/** A kind of spring. */
+/** Kinds of springs, by number. */
+export const SPRING_KINDS = ['structural', 'shear', 'bend'];
 export const STRUCTURAL = 0;
 const HEADER_BYTES = 32;
 

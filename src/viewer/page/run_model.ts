@@ -1,4 +1,3 @@
-import { short } from './dom';
 import { History } from './history';
 import type { DivergedMessage, Frame, FrameNumbers, Header, SceneMessage, Topology } from './protocol';
 
@@ -70,23 +69,4 @@ export class RunModel {
     for (const t of torn.flatMap(({ triangles }) => triangles)) this.triangles.fill(this.triangles[3 * t], 3 * t, 3 * t + 3);
     for (const s of broken.flatMap(({ springs }) => springs)) this.springs[2 * s + 1] = this.springs[2 * s];
   }
-}
-
-/** Position, speed and stretch of a particle, for people. */
-export function particleText({ scene, topology, positions, speeds, springs }: RunModel, particle: number): string {
-  const body = scene.bodies.find(({ first, count }) => particle >= first && particle < first + count);
-  const at = positions.subarray(3 * particle, 3 * particle + 3);
-  let most = -Infinity;
-  for (let s = 0; s < topology.restLengths.length; ++s) {
-    const [a, b] = [springs[2 * s], springs[2 * s + 1]];
-    if ((a !== particle && b !== particle) || a === b || topology.restLengths[s] <= 0) continue;
-    const length = Math.hypot(positions[3 * a] - positions[3 * b], positions[3 * a + 1] - positions[3 * b + 1], positions[3 * a + 2] - positions[3 * b + 2]);
-    most = Math.max(most, length / topology.restLengths[s] - 1);
-  }
-  return [
-    `${body?.name ?? 'particle'} ${particle - (body?.first ?? 0)}`,
-    `position ${[...at].map((value) => value.toFixed(3)).join(', ')} m`,
-    `speed ${short(speeds[particle])} m/s`,
-    ...(most > -Infinity ? [`most stretched spring ${short(100 * most)} %`] : []),
-  ].join('\n');
 }

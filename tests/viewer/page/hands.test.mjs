@@ -199,6 +199,8 @@ test('a click shows the numbers of a particle, a drag hides the hint and shows i
   const at = await page.evaluate(() => window.sprung.project('rope', 5));
   await page.mouse.click(at.x, at.y);
   await harness.control(page, 'selection').getByText('position').waitFor();
+  await harness.control(page, 'selection').getByText(/structural spring to rope \d+/).waitFor();
+  await harness.control(page, 'selection').getByText(/tension \S+ N/).waitFor();
   const now = await page.evaluate(() => window.sprung.project('rope', 5));
   await page.mouse.move(now.x, now.y);
   await page.mouse.down();
@@ -208,6 +210,27 @@ test('a click shows the numbers of a particle, a drag hides the hint and shows i
   await harness.control(page, 'pull-force').getByText(/\d N/).waitFor();
   await page.mouse.up();
   await harness.control(page, 'pull-force').waitFor({ state: 'hidden' });
+  await harness.closePage(page);
+});
+
+test('a click between two particles selects their spring, with the tension that its stretch gives', async () => {
+  const { page } = await openExample('two_masses');
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.frame === 1);
+  await harness.advance(page, 10);
+  const [body] = await page.evaluate(() => Object.keys(window.sprung.bodies));
+  const [a, b] = await page.evaluate((body) => [0, 1].map((k) => window.sprung.project(body, k)), body);
+  await page.mouse.click((a.x + b.x) / 2 + 2, (a.y + b.y) / 2 + 2);
+  const selection = harness.control(page, 'selection');
+  await selection.getByText(/tension \S+ N/).waitFor();
+  const text = await selection.innerText();
+  const { stiffness, rest } = await page.evaluate((body) => {
+    const { springs, shape } = window.sprung.runs[0].scene.scene.bodies[body];
+    return { stiffness: springs.structural.stiffness, rest: Math.hypot(...shape.from.map((value, d) => value - shape.to[d])) };
+  }, body);
+  const stretch = Number(/stretch (\S+) %/.exec(text)[1]) / 100;
+  const tension = Number(/tension (\S+) N/.exec(text)[1]);
+  assert.ok(tension > 0 && Math.abs(tension - stiffness * rest * stretch) < 0.02 * tension, text); // of three digits each
   await harness.closePage(page);
 });
 

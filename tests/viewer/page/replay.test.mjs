@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
@@ -42,6 +42,19 @@ test('a replay shows the positions of the OBJ files', async () => {
   }
   assert.ok((await harness.colourCount(page)) >= 5);
   await harness.closePage(page);
+});
+
+test('a replay without diagnostics has no empty plots', async () => {
+  const folder = join(harness.scratchFolder(), 'run');
+  cpSync(run, folder, { recursive: true });
+  rmSync(join(folder, 'diagnostics.csv'));
+  for (const [shown, count] of [[run, 4], [folder, 0]]) {
+    const server = await harness.view(shown);
+    const page = await harness.openPage(server.address);
+    await harness.firstFrame(page);
+    await harness.until(page, (count) => [...document.querySelectorAll('.plot')].filter(({ hidden }) => !hidden).length === count, count);
+    await harness.closePage(page);
+  }
 });
 
 test('a replay plays and loops', async () => {
