@@ -8,7 +8,7 @@
 #include "base/files/file_writer.h"
 #include "base/format.h"
 #include "base/parallel.h"
-#include "scene/json/json_text.h"
+#include "viewer/example_scenes.h"
 #include "viewer/html_export.h"
 #include "viewer/live_session.h"
 #include "viewer/page.h"
@@ -18,9 +18,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,33 +27,6 @@
 namespace sprung {
 
 namespace {
-
-/// Whether a file is a scene: a JSON object with bodies.
-bool is_scene(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.contains("bodies");
-}
-
-void add_scenes(const std::filesystem::path& folder, const std::string& prefix, std::vector<ExampleScene>& scenes) {
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    if (entry.path().extension() != ".json" || !entry.is_regular_file(ignored) || !is_scene(entry.path())) continue;
-    scenes.push_back({.name = prefix + entry.path().stem().string(), .file = entry.path().string()});
-  }
-}
-
-/// The scenes beside a scene and the lessons beside these, which the page offers.
-std::vector<ExampleScene> scenes_beside(const std::filesystem::path& scene) {
-  std::vector<ExampleScene> scenes;
-  std::error_code ignored;
-  const std::filesystem::path own = std::filesystem::absolute(scene, ignored).parent_path();
-  const std::filesystem::path folder = own.filename() == "lessons" ? own.parent_path() : own;
-  add_scenes(folder, "", scenes);
-  add_scenes(folder / "lessons", "lessons/", scenes);
-  std::ranges::sort(scenes, {}, &ExampleScene::name);
-  return scenes;
-}
 
 // The page shows problems of a scene; who opens the scene reads the terminal first.
 void print_problems(const std::vector<Problem>& problems) {

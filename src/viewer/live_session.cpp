@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -65,9 +66,7 @@ LiveSession::LiveSession(SceneSource source, std::vector<ExampleScene> examples,
 LiveSession::~LiveSession() { stop(); }
 
 std::string LiveSession::hello() const {
-  std::vector<std::string> names;
-  for (const ExampleScene& example : examples_) names.push_back(example.name);
-  return hello_text("live", std::filesystem::path(first_source_.file).filename().string(), names);
+  return hello_text("live", std::filesystem::path(first_source_.file).filename().string(), examples_);
 }
 
 void LiveSession::start(Publisher& publisher) {
@@ -179,7 +178,9 @@ void LiveSession::obey(ClientId client, const PageCommand& command) {
   } else if (command.name() == "single") {
     end_comparison();
   } else if (command.name() == "open") {
-    open_example(client, command.text("example"));
+    open({.file = example_of(command).file, .overrides = {}, .mesh_paths = first_source_.mesh_paths});
+  } else if (command.name() == "picture") {
+    tell_picture(client, example_of(command));
   } else if (command.name() == "scene") {
     tell_scene(client, command);
   } else if (command.name() == "save") {
@@ -269,10 +270,18 @@ void LiveSession::reset() {
   }
 }
 
-void LiveSession::open_example(ClientId client, const std::string& name) {
+const ExampleScene& LiveSession::example_of(const PageCommand& command) const {
+  const std::string name = command.text("example");
   const auto found = std::ranges::find(examples_, name, &ExampleScene::name);
-  if (found == examples_.end()) return publisher_->tell(client, error_text("there is no example " + name));
-  open({.file = found->file, .overrides = {}, .mesh_paths = first_source_.mesh_paths});
+  if (found == examples_.end()) throw PageCommandError("there is no example " + name);
+  return *found;
+}
+
+void LiveSession::tell_picture(ClientId client, const ExampleScene& example) {
+  if (example.picture.empty()) throw PageCommandError("there is no picture of " + example.name);
+  std::ifstream file(example.picture, std::ios::binary);
+  const Bytes bytes(std::istreambuf_iterator<char>(file), {});
+  publisher_->tell(client, picture_text(example.name, bytes));
 }
 
 /// A scene with mistakes leaves what is there. Returns whether the scene was opened.

@@ -1,6 +1,7 @@
 // Simulates a scene for the viewer, in a thread of its own.
 #pragma once
 
+#include "viewer/example_scenes.h"
 #include "viewer/live_run.h"
 #include "viewer/page_command.h"
 #include "viewer/session.h"
@@ -19,12 +20,6 @@
 #include <vector>
 
 namespace sprung {
-
-/// A scene of the menu. Lessons have a name that begins with "lessons/".
-struct ExampleScene {
-  std::string name;
-  std::string file;
-};
 
 class LiveSession final : public ViewSession {
  public:
@@ -62,7 +57,8 @@ class LiveSession final : public ViewSession {
   [[nodiscard]] Shown& run_of(const PageCommand& command);
   void play(bool playing);
   void reset();
-  void open_example(ClientId client, const std::string& name);
+  [[nodiscard]] const ExampleScene& example_of(const PageCommand& command) const;
+  void tell_picture(ClientId client, const ExampleScene& example);
   bool open(const SceneSource& source);
   void look_at_file();
   void compare(const std::string& integrator);

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "output/run_recorder.h"
+#include "viewer/base64.h"
 
 #include <nlohmann/json.hpp>
 
@@ -63,8 +64,16 @@ void add_location(const StepFailure& failure, const SpringNetwork& network, Json
 
 }  // namespace
 
-std::string hello_text(const std::string& mode, const std::string& title, const std::vector<std::string>& examples) {
-  return text_of({{"type", "hello"}, {"version", SPRUNG_VERSION}, {"mode", mode}, {"title", title}, {"examples", examples}});
+std::string hello_text(const std::string& mode, const std::string& title, const std::vector<ExampleScene>& examples) {
+  Json list = Json::array();
+  for (const ExampleScene& example : examples) {
+    list.push_back({{"name", example.name}, {"sentence", example.sentence}, {"picture", !example.picture.empty()}});
+  }
+  return text_of({{"type", "hello"}, {"version", SPRUNG_VERSION}, {"mode", mode}, {"title", title}, {"examples", list}});
+}
+
+std::string picture_text(const std::string& example, const Bytes& png) {
+  return text_of({{"type", "picture"}, {"example", example}, {"png", base64(png)}});
 }
 
 std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live, const LiveRun& run) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "viewer/example_scenes.h"
 #include "viewer/live_run.h"
 
 #include <optional>
@@ -16,7 +17,8 @@ struct PlayState {
   double speed = 1.0;  ///< at most this times real time; 0: no bound
 };
 
-[[nodiscard]] std::string hello_text(const std::string& mode, const std::string& title, const std::vector<std::string>& examples);
+[[nodiscard]] std::string hello_text(const std::string& mode, const std::string& title, const std::vector<ExampleScene>& examples);
+[[nodiscard]] std::string picture_text(const std::string& example, const Bytes& png);
 [[nodiscard]] std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live, const LiveRun& run);
 /// The scene of a simulator that a program steps. Its JSON text is not known.
 [[nodiscard]] std::string watched_text(std::uint32_t generation, const std::string& title, const Simulator& simulator);

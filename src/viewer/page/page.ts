@@ -1,12 +1,13 @@
 import { control, byId, element, short } from './dom';
 import { Drag } from './drag';
 import { EmbeddedRun } from './embedded_run';
+import { Gallery } from './gallery';
 import { History } from './history';
 import { integratorLabel } from './integrators';
 import { LiveHistory } from './live_history';
 import { Notices } from './notices';
 import { Plots } from './plots';
-import type { Command, DivergedMessage, Frame, Header, ProblemsMessage, SavedMessage, SceneMessage, TextMessage, Topology } from './protocol';
+import type { Command, DivergedMessage, Example, Frame, Header, ProblemsMessage, SavedMessage, SceneMessage, TextMessage, Topology } from './protocol';
 import { ReplayPlayer } from './replay_player';
 import { RunModel } from './run_model';
 import { copyScene, downloadText, objText, Recorder, savePicture, sceneText } from './saving';
@@ -38,6 +39,7 @@ export class Page implements SourceListener {
   private readonly plots: Plots;
   private readonly panel: ViewPanel;
   private readonly drag: Drag;
+  private readonly gallery: Gallery;
   private readonly player: ReplayPlayer;
   private readonly recorder = new Recorder();
   private readonly status = control('status');
@@ -81,16 +83,13 @@ export class Page implements SourceListener {
       speed: (factor) => (this.recorded ? this.player.setSpeed(factor) : this.send({ do: 'speed', factor })),
       every: (steps) => this.send({ do: 'every', steps }),
       compare: (integrator) => this.send(integrator ? { do: 'compare', integrator } : { do: 'single' }),
-      open: (example) => {
-        this.fitted = '';
-        this.settings.forget();
-        this.send({ do: 'open', example });
-      },
+      open: (example) => this.open(example),
       seek: (frame) => {
         this.play(false);
         this.player.seek(frame);
       },
     });
+    this.gallery = new Gallery((example) => this.open(example), (example) => this.send({ do: 'picture', example }));
     const themes = new ThemeChoice((theme) => {
       this.theme = theme;
       view.setTheme(theme);
@@ -147,6 +146,8 @@ export class Page implements SourceListener {
     } else if (message.type === 'changed') {
       this.sceneWanted?.(message.changed);
       this.sceneWanted = null;
+    } else if (message.type === 'picture') {
+      this.gallery.setPicture(message.example, message.png);
     } else if (message.type === 'tension') {
       this.selection.receive(message);
       this.plotted.stale = true;
@@ -178,11 +179,12 @@ export class Page implements SourceListener {
     return this.shown.mode === 'replay';
   }
 
-  private greet(mode: 'live' | 'replay', title: string, examples: string[]): void {
+  private greet(mode: 'live' | 'replay', title: string, examples: Example[]): void {
     this.shown.mode = mode;
     document.body.dataset.mode = mode;
     this.setTitle(title);
-    this.toolbar.setExamples(examples);
+    this.toolbar.setExamples(examples.map(({ name }) => name));
+    this.gallery.setExamples(examples);
     this.scenes.clear();
     this.coming.clear();
     this.remove(1);
@@ -191,6 +193,12 @@ export class Page implements SourceListener {
     this.toolbar.setRecorded();
     const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
     if (this.shown.models.length === 0 && !still) this.play(true);
+  }
+
+  private open(example: string): void {
+    this.fitted = '';
+    this.settings.forget();
+    this.send({ do: 'open', example });
   }
 
   private beginScene(message: SceneMessage): void {

@@ -8,7 +8,10 @@ export interface BodyRange { name: string; first: number; count: number }
 export interface Diagnostics { columns: string[]; rows: (number | null)[][] }
 export interface Problem { key: string; value: string; rule: string; remedy: string; text: string }
 
-export interface HelloMessage { type: 'hello'; version: string; mode: Mode; title: string; examples: string[] }
+export interface Example { name: string; sentence: string; picture: boolean }
+export interface PictureMessage { type: 'picture'; example: string; png: string }
+
+export interface HelloMessage { type: 'hello'; version: string; mode: Mode; title: string; examples: Example[] }
 export interface SceneMessage {
   type: 'scene';
   run: number;
@@ -64,6 +67,7 @@ export type TextMessage =
   | ObjMessage
   | ChangedMessage
   | SavedMessage
+  | PictureMessage
   | TensionMessage
   | NoticeMessage
   | ErrorMessage
@@ -75,7 +79,7 @@ export type Command =
   | { do: 'speed'; factor: number }
   | { do: 'set'; run?: number; key: string; value: Json }
   | { do: 'compare'; integrator: string }
-  | { do: 'open'; example: string }
+  | { do: 'open' | 'picture'; example: string }
   | { do: 'grab' | 'release'; run: number; particle: number }
   | { do: 'drag'; target: [number, number, number] }
   | { do: 'drop'; pin: boolean }

@@ -1,4 +1,5 @@
 import { byId, control, element, setOptions } from './dom';
+import { labelOf } from './gallery';
 import { INTEGRATORS } from './integrators';
 import type { StateMessage } from './protocol';
 
@@ -79,7 +80,7 @@ export class Toolbar {
   }
 
   setExamples(names: string[]): void {
-    const option = (name: string) => element('option', { value: name, textContent: name.replace(/^lessons\//, '').replaceAll('_', ' ') });
+    const option = (name: string) => element('option', { value: name, textContent: labelOf(name) });
     const groupOf = (label: string, members: string[]) => element('optgroup', { label }, ...members.map(option));
     const lessons = names.filter((name) => name.startsWith('lessons/'));
     const others = names.filter((name) => !name.startsWith('lessons/'));

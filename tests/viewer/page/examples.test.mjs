@@ -28,6 +28,25 @@ test('the menu opens every example, and it moves', async () => {
   await harness.closePage(page);
 });
 
+test('the gallery tells each example in a sentence, shows its picture and opens it', async () => {
+  const server = await harness.view(harness.example('hanging_cloth'));
+  const page = await harness.openPage(server.address, { viewport: { width: 800, height: 500 } });
+  await harness.firstFrame(page);
+  if (!(await harness.control(page, 'browse').isVisible())) await page.keyboard.press('p');
+  await harness.control(page, 'browse').click();
+  const withoutPicture = ['materials', 'six_schemes', refused];
+  for (const name of names) {
+    const card = harness.control(page, `card-${name}`);
+    if (name !== refused) assert.ok((await card.innerText()).length > name.length + 10, name);
+    const drawn = (name) => document.querySelector(`[data-testid="card-${name}"] img`).naturalWidth > 0;
+    if (!withoutPicture.includes(name)) await harness.until(page, drawn, name);
+  }
+  await harness.control(page, 'card-two_masses').click();
+  await harness.until(page, () => window.sprung.title === 'two_masses.json');
+  assert.equal(await harness.control(page, 'example').inputValue(), 'two_masses');
+  await harness.closePage(page);
+});
+
 test('an example that is refused says why and leaves the one before', async () => {
   const server = await harness.view(harness.example('hanging_cloth'));
   const page = await harness.openPage(server.address);

@@ -1,0 +1,13 @@
+// Bytes as text.
+#pragma once
+
+#include "viewer/message.h"
+
+#include <string>
+
+namespace sprung {
+
+/// RFC 4648, with padding.
+[[nodiscard]] std::string base64(const Bytes& bytes);
+
+}  // namespace sprung
