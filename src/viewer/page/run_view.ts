@@ -34,7 +34,8 @@ export class RunView {
   private readonly pull: Line<BufferGeometry, LineBasicMaterial>;
   private readonly shadowCenter = new Vector3();
   private shadowRadius = 0;
-  private readonly bodyBox = new Box3();
+  /** Of the bodies in the frame shown. */
+  readonly bodyBox = new Box3();
 
   constructor(readonly model: RunModel) {
     const size = this.measureBodies().isEmpty() ? 1 : this.bodyBox.getSize(new Vector3()).length();

@@ -1,4 +1,4 @@
-import { NeutralToneMapping, PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
+import { Box3, NeutralToneMapping, PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { AxisCross } from './axis_cross';
 import { ColorScale } from './colors';
@@ -12,6 +12,7 @@ import type { ViewOptions } from './view_options';
 export interface Rect { x: number; y: number; width: number; height: number }
 
 const MARGIN = 1.12;
+const MOST_GROWTH = 2;
 /** From where the picture is seen. */
 export const DIRECTIONS = {
   usual: new Vector3(0.55, 0.38, 1).normalize(),
@@ -45,6 +46,9 @@ export class SceneView {
   private chosen = false;
   private direction = DIRECTIONS.usual;
   private readonly followed = new Vector3();
+  /** What the camera was placed for, and half of its diagonal [m] before bodies left it. */
+  private readonly fitted = new Box3();
+  private firstRadius = 1;
   private readonly axes = new AxisCross();
 
   /** Throws where there is no WebGL. */
@@ -127,7 +131,23 @@ export class SceneView {
     if (!this.runs[0]) return;
     this.chosen = false;
     this.direction = direction;
-    const box = this.runs[0].box();
+    this.fitted.copy(this.runs[0].box());
+    this.firstRadius = Math.max(this.fitted.getSize(new Vector3()).length() / 2, 1e-6);
+    this.place();
+  }
+
+  /** Bodies that leave the picture by themselves take it with them, in few jumps and not to infinity. */
+  private grow(run: RunView): void {
+    if (this.chosen || this.options.follow || !this.controls.enabled || this.fitted.containsBox(run.bodyBox)) return;
+    const wanted = run.bodyBox.clone().expandByScalar(run.bodyBox.isEmpty() ? 0 : 0.15 * this.radius).union(this.fitted);
+    if (wanted.getSize(new Vector3()).length() / 2 > MOST_GROWTH * this.firstRadius) return;
+    this.fitted.copy(wanted);
+    this.place();
+  }
+
+  /** Puts the camera where all of the fitted box is in the picture. */
+  private place(): void {
+    const { fitted: box, direction } = this;
     const center = box.getCenter(new Vector3());
     this.radius = Math.max(box.getSize(new Vector3()).length() / 2, 1e-6);
     const { width, height } = this.rects()[0];
@@ -177,7 +197,9 @@ export class SceneView {
     const { color } = this.options;
     this.scale.follow(color, Math.max(0, ...this.runs.map((run) => run.measure(color))));
     for (const run of this.runs) run.update(this.options, this.theme, this.scale.top);
-    if (this.runs[0]) this.follow(this.runs[0].center);
+    if (!this.runs[0]) return;
+    this.follow(this.runs[0].center);
+    this.grow(this.runs[0]);
   }
 
   /** Moves the camera as the bodies have moved since the last frame. */

@@ -193,6 +193,22 @@ test('the picture is fitted again when the window changes, unless the user moved
   await harness.closePage(page);
 });
 
+test('a mass that leaves the picture by itself stays in sight until the camera is moved', async () => {
+  const { page } = await openExample('two_masses', { viewport: { width: 800, height: 500 } });
+  await harness.control(page, 'reset').click();
+  await harness.until(page, () => window.sprung.frame === 1);
+  const bottom = () => page.evaluate(() => window.sprung.project('masses', 1).y - document.querySelector('canvas').getBoundingClientRect().bottom);
+  let longest = 0;
+  for (let frame = 0; frame < 10; ++frame) {
+    await harness.advance(page, 1);
+    await harness.drawn(page);
+    longest = Math.min(longest, await page.evaluate(() => window.sprung.bodies.masses.positions[4]));
+    assert.ok((await bottom()) < 0, `frame ${frame}`);
+  }
+  assert.ok(longest < -1.7, 'it swings out'); // from -1, about m g / k = 0.49 m deeper
+  await harness.closePage(page);
+});
+
 test('a click shows the numbers of a particle, a drag hides the hint and shows its force', async () => {
   const { page } = await openExample('lab_rope');
   await harness.control(page, 'hint').waitFor();
