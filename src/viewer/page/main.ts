@@ -1,8 +1,8 @@
-import { Connection } from './connection';
-import { embeddedRun } from './embedded_run';
-import { Notices } from './notices';
+import { Connection } from './run/connection';
+import { embeddedRun } from './run/embedded_run';
+import { Notices } from './panel/notices';
 import { Page } from './page';
-import { SceneView } from './scene_view';
+import { SceneView } from './picture/scene_view';
 
 /** Null where the browser cannot draw. */
 function sceneView(): SceneView | null {

@@ -1,7 +1,7 @@
-import { project } from './picking';
-import type { Mode } from './protocol';
-import type { RunModel } from './run_model';
-import type { SceneView } from './scene_view';
+import { project } from './picture/picking';
+import type { Mode } from './run/protocol';
+import type { RunModel } from './run/run_model';
+import type { SceneView } from './picture/scene_view';
 
 declare global {
   interface Window {

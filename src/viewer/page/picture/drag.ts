@@ -1,11 +1,11 @@
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
-import { byId, short } from './dom';
+import { byId, short } from '../panel/dom';
 import { pick, pickSpring, project } from './picking';
 import type { Pick } from './picking';
-import { PINNED } from './protocol';
-import type { Command } from './protocol';
+import { PINNED } from '../run/protocol';
+import type { Command } from '../run/protocol';
 import type { SceneView } from './scene_view';
-import type { Selected } from './selection';
+import type { Selected } from '../panel/selection';
 
 const CLICK_PX = 4;
 const ON_PARTICLE_PX = 6;

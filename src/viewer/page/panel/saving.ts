@@ -1,6 +1,6 @@
 import { byId, control, element } from './dom';
-import type { RunModel } from './run_model';
-import type { SceneView } from './scene_view';
+import type { RunModel } from '../run/run_model';
+import type { SceneView } from '../picture/scene_view';
 
 export function download(name: string, content: Blob): void {
   const address = URL.createObjectURL(content);

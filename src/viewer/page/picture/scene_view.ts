@@ -2,10 +2,10 @@ import { Box3, NeutralToneMapping, PerspectiveCamera, Vector3, WebGLRenderer } f
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { AxisCross } from './axis_cross';
 import { ColorScale } from './colors';
-import type { RunModel } from './run_model';
+import type { RunModel } from '../run/run_model';
 import { RunView } from './run_view';
-import { LIGHT } from './theme';
-import type { Theme } from './theme';
+import { LIGHT } from '../panel/theme';
+import type { Theme } from '../panel/theme';
 import { defaultOptions } from './view_options';
 import type { ViewOptions } from './view_options';
 

@@ -1,9 +1,9 @@
 import { control, short } from './dom';
-import type { Pick } from './picking';
-import { SPRING_KINDS } from './protocol';
-import type { Command, SceneMessage, TensionMessage } from './protocol';
-import type { RunModel } from './run_model';
-import type { SceneView } from './scene_view';
+import type { Pick } from '../picture/picking';
+import { SPRING_KINDS } from '../run/protocol';
+import type { Command, SceneMessage, TensionMessage } from '../run/protocol';
+import type { RunModel } from '../run/run_model';
+import type { SceneView } from '../picture/scene_view';
 
 /** A particle, and a spring at it that was meant; without one, its most stretched spring is shown. */
 export interface Selected extends Pick { spring?: number }

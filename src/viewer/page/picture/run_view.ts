@@ -13,9 +13,9 @@ import {
 } from 'three';
 import { BodyView } from './body_view';
 import { ObstacleView } from './obstacle_view';
-import type { Json } from './protocol';
-import type { RunModel } from './run_model';
-import type { Theme } from './theme';
+import type { Json } from '../run/protocol';
+import type { RunModel } from '../run/run_model';
+import type { Theme } from '../panel/theme';
 import type { ColorMode, ViewOptions } from './view_options';
 
 /** From the side of the usual view, so that folds have a dark flank. */

@@ -1,5 +1,5 @@
 import { Color, DoubleSide, MeshStandardMaterial } from 'three';
-import type { SceneMessage } from './protocol';
+import type { SceneMessage } from '../run/protocol';
 
 /** How a body looks. */
 export interface Look { color: Color; roughness: number; sheen: number }

@@ -1,4 +1,4 @@
-import type { Mesh } from './protocol';
+import type { Mesh } from '../run/protocol';
 
 /** Area-weighted vertex normals. */
 export function vertexNormals(positions: Float32Array, triangles: Uint32Array, normals: Float32Array): void {

@@ -1,5 +1,5 @@
 import { element, short } from './dom';
-import type { History, Quantity } from './history';
+import type { History, Quantity } from '../run/history';
 
 /** `optional` curves are drawn on request: more than three cannot be told apart. */
 interface Series { quantity: Quantity; label: string; color: string; optional?: boolean }

@@ -1,8 +1,8 @@
 import { Color } from 'three';
 import { looksOf } from './looks';
-import { IN_CONTACT, STRUCTURAL } from './protocol';
-import type { RunModel } from './run_model';
-import type { Theme } from './theme';
+import { IN_CONTACT, STRUCTURAL } from '../run/protocol';
+import type { RunModel } from '../run/run_model';
+import type { Theme } from '../panel/theme';
 import type { ColorMode } from './view_options';
 
 /** Stops of viridis. */

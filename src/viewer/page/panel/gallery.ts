@@ -1,5 +1,5 @@
 import { byId, control, element } from './dom';
-import type { Example } from './protocol';
+import type { Example } from '../run/protocol';
 
 export function labelOf(name: string): string {
   return name.replace(/^lessons\//, '').replaceAll('_', ' ');

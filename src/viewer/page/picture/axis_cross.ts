@@ -1,5 +1,5 @@
 import { Matrix4 } from 'three';
-import { byId } from './dom';
+import { byId } from '../panel/dom';
 
 const AXES = [
   { name: 'x', color: '#c8423f' },

@@ -2,8 +2,8 @@ import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, Me
 import type { Vector3 } from 'three';
 import { FloorView } from './floor_view';
 import { creased, vertexNormals } from './normals';
-import type { Mesh as MeshData, Motion } from './protocol';
-import type { Theme } from './theme';
+import type { Mesh as MeshData, Motion } from '../run/protocol';
+import type { Theme } from '../panel/theme';
 
 /** An obstacle: fixed, moved as a rigid body, or deforming. */
 export class ObstacleView {

@@ -1,8 +1,8 @@
-import { SCALE_CSS } from './colors';
+import { SCALE_CSS } from '../picture/colors';
 import { byId, control, element, short } from './dom';
 import type { Theme } from './theme';
-import type { SceneView } from './scene_view';
-import type { ColorMode, Switch } from './view_options';
+import type { SceneView } from '../picture/scene_view';
+import type { ColorMode, Switch } from '../picture/view_options';
 
 const FEW_PARTICLES = 300;
 

@@ -3,7 +3,7 @@ import { CheckField, NumberField, SelectField, valueAt, VectorField } from './fi
 import type { Change, Field, NumberSpec, SceneJson } from './fields';
 import { INTEGRATORS } from './integrators';
 import { materialsFor } from './materials';
-import type { Json, ProblemsMessage, SceneMessage } from './protocol';
+import type { Json, ProblemsMessage, SceneMessage } from '../run/protocol';
 
 const KINDS = ['structural', 'shear', 'bend'] as const;
 /** So many bodies do not fit beside each other. */

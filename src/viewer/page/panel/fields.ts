@@ -1,5 +1,5 @@
 import { element } from './dom';
-import type { Json } from './protocol';
+import type { Json } from '../run/protocol';
 
 export type SceneJson = { [key: string]: Json };
 export type Change = (key: string, value: Json) => void;

@@ -13,10 +13,10 @@ import { Dots } from './dots';
 import { MassView } from './mass_view';
 import { looksOf, surfaceMaterial } from './looks';
 import { vertexNormals } from './normals';
-import { IN_CONTACT, PINNED } from './protocol';
+import { IN_CONTACT, PINNED } from '../run/protocol';
 import { RopeView } from './rope_view';
-import type { RunModel } from './run_model';
-import type { Theme } from './theme';
+import type { RunModel } from '../run/run_model';
+import type { Theme } from '../panel/theme';
 import { VelocityView } from './velocity_view';
 import type { ViewOptions } from './view_options';
 

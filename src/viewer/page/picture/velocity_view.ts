@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments } from 'three';
-import type { RunModel } from './run_model';
-import type { Theme } from './theme';
+import type { RunModel } from '../run/run_model';
+import type { Theme } from '../panel/theme';
 
 /** An arrow is as long as the way of its particle in this time [s]. */
 const SHOWN_TIME = 0.1;

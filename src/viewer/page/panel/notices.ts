@@ -1,5 +1,5 @@
 import { byId, control, element, short } from './dom';
-import type { Command, DivergedMessage, Problem } from './protocol';
+import type { Command, DivergedMessage, Problem } from '../run/protocol';
 
 /** What a scene's author has to know, over the picture: mistakes, warnings, a run that diverged. */
 export class Notices {

@@ -1,7 +1,7 @@
 import { byId, control, element, setOptions } from './dom';
 import { labelOf } from './gallery';
 import { INTEGRATORS } from './integrators';
-import type { StateMessage } from './protocol';
+import type { StateMessage } from '../run/protocol';
 
 export type Direction = 'usual' | 'front' | 'side' | 'top';
 

@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry, Color, Matrix4, Mesh, MeshStandardMaterial, Vector3 } from 'three';
-import type { Mesh as MeshData } from './protocol';
-import type { Theme } from './theme';
+import type { Mesh as MeshData } from '../run/protocol';
+import type { Theme } from '../panel/theme';
 
 const EXTENT = 40;
 
