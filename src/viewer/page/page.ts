@@ -137,6 +137,7 @@ export class Page implements SourceListener {
     } else if (message.type === 'state') {
       this.shown.playing = message.playing;
       this.toolbar.setState(message);
+      this.plotted.stale = true;
     } else if (message.type === 'diverged') {
       this.showDivergence(message);
     } else if (message.type === 'obj') {
@@ -322,6 +323,7 @@ export class Page implements SourceListener {
   private labelRuns(): void {
     const { models } = this.shown;
     const labels = models.length < 2 ? [] : models.map(({ scene }) => integratorLabel(scene.integrator));
+    document.body.toggleAttribute('data-two', models.length > 1);
     byId('labels').replaceChildren(...labels.map((textContent) => element('span', { textContent })));
   }
 

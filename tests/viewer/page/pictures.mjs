@@ -14,6 +14,7 @@ test('live', async () => {
   const server = await harness.view(harness.example('cloth_on_bunny'));
   const page = await harness.openPage(server.address, { viewport, before });
   await harness.firstFrame(page);
+  await harness.control(page, 'view-shadows').check(); // off where there is no graphics card
   await harness.play(page);
   await harness.until(page, () => window.sprung.frame >= 22);
   await harness.pause(page);

@@ -16,6 +16,7 @@ export class ViewPanel {
   constructor(private readonly view: SceneView) {
     this.boxes = [...control('view').querySelectorAll<HTMLInputElement>('input')];
     for (const box of this.boxes) {
+      box.checked = view.options[box.value as Switch];
       box.addEventListener('change', () => {
         view.options[box.value as Switch] = box.checked;
         view.invalidate();

@@ -12,6 +12,8 @@ import type { ViewOptions } from './view_options';
 export interface Rect { x: number; y: number; width: number; height: number }
 
 const MARGIN = 1.12;
+/** Two runs have their names above them. */
+const MARGIN_OF_TWO = 1.25;
 const MOST_GROWTH = 2;
 /** From where the picture is seen. */
 export const DIRECTIONS = {
@@ -156,11 +158,12 @@ export class SceneView {
     const right = new Vector3(0, 1, 0).cross(direction).normalize();
     const up = direction.clone().cross(right);
     // The nearest distance at which all corners of the box are in the picture.
+    const margin = this.runs.length > 1 ? MARGIN_OF_TWO : MARGIN;
     let distance = this.radius;
     for (let k = 0; k < 8; ++k) {
       const corner = new Vector3(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z).sub(center);
       const across = Math.max(Math.abs(corner.dot(right)) / horizontal, Math.abs(corner.dot(up)) / vertical);
-      distance = Math.max(distance, MARGIN * across + corner.dot(direction));
+      distance = Math.max(distance, margin * across + corner.dot(direction));
     }
     this.controls.target.copy(center);
     this.camera.position.copy(center).addScaledVector(direction, distance);
