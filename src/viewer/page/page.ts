@@ -229,10 +229,11 @@ export class Page implements SourceListener {
   }
 
   private setTitle(title: string): void {
+    // A changed setting keeps the name that was chosen.
+    if (title !== this.shown.title) this.saveName.value = `${title.replace(/\.json$/, '').replace(/[^\w-]/g, '_').slice(0, 60)}_1`;
     this.shown.title = title;
     byId('title').textContent = title;
     this.toolbar.setExample(title);
-    this.saveName.value = `${title.replace(/\.json$/, '').replace(/[^\w-]/g, '_').slice(0, 60)}_1`;
     document.title = title ? `${title} - Sprung` : 'Sprung';
   }
 

@@ -25,6 +25,10 @@ test('a run is saved beside its scene, as a folder and as a page that show what 
   await harness.control(page, 'save-run').click();
   await harness.control(page, 'saved').getByText('rope_1').waitFor();
   assert.equal(await harness.control(page, 'save-name').inputValue(), 'rope_2');
+  await harness.control(page, 'gravity').locator('input').nth(1).fill('-9');
+  await harness.control(page, 'gravity').locator('input').nth(1).press('Enter');
+  await harness.until(page, () => window.sprung.runs[0].scene.scene.gravity[1] === -9);
+  assert.equal(await harness.control(page, 'save-name').inputValue(), 'rope_2');
   await harness.control(page, 'save-page').click();
   await harness.control(page, 'saved').getByText('rope_2.html').waitFor();
   await harness.control(page, 'save-name').fill('rope_1');
