@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <string_view>
 #include <thread>
 
 namespace sprung {
@@ -31,11 +32,13 @@ constexpr const char* kExamples = R"(Examples:
   sprung export frames --format html
   sprung export frames --format gltf,npz --out elsewhere
   sprung plot frames others --out compared.svg
+  sprung sweep scene.json --vary bodies.rope.mass=0.1,0.2 --sample 'bodies.rope.springs.structural.damping=uniform(0,0.1)' --count 20 --out swept
+  sprung sweep --status swept
   sprung materials cotton
 
 Meshes are searched beside the scene file (by info: where you are), in each --mesh-path, then in the folders of SPRUNG_MESH_PATH.
 
-Exit codes: 0 done, 2 wrong usage, 3 invalid scene or mesh, 4 the simulation diverged, 5 the scene file or a run
+Exit codes: 0 done, 2 wrong usage, 3 invalid scene or mesh, 4 the simulation diverged or runs of a sweep failed, 5 the scene file or a run
 cannot be read or the output cannot be written, 130 interrupted, 1 anything else.)";
 
 /// The options of all commands, and the parser that fills them.
@@ -51,6 +54,7 @@ class Parser {
     add_view();
     add_export();
     add_plot();
+    add_sweep();
     add_materials();
     add_help();
   }
@@ -69,6 +73,7 @@ class Parser {
     }
     check_formats(run_.formats);
     check_formats(export_.formats);
+    check_formats(sweep_.formats);
     if (app_.got_subcommand("run")) return run_;
     if (app_.got_subcommand("validate")) return validate_;
     if (app_.got_subcommand("view")) {
@@ -84,6 +89,10 @@ class Parser {
       return export_;
     }
     if (app_.got_subcommand("plot")) return plot_;
+    if (app_.got_subcommand("sweep")) {
+      check_sweep();
+      return sweep_;
+    }
     if (app_.got_subcommand("materials")) return materials_;
     if (app_.got_subcommand("help")) return help_of_.empty() ? PrintOptions{help_of_all} : help_of_command();
     return info_;
@@ -181,6 +190,90 @@ class Parser {
     command->add_flag("--overwrite", plot_.overwrite, "Replace the file if it exists");
   }
 
+  void add_sweep() {
+    CLI::App* sweep = app_.add_subcommand("sweep", "Runs a scene once for each combination of values, as processes or on Slurm");
+    sweep
+        ->add_option("SCENE", sweep_.scene.file,
+                     "Scene file; -: from standard input, kept as scene.json in the folder of the sweep")
+        ->type_name("");
+    const auto add_list = [&](const char* name, std::vector<std::string>& list, const char* text, const char* type) {
+      sweep->add_option(name, list, text)->allow_extra_args(false)->type_name(type);
+    };
+    add_list("--vary", sweep_.request.vary, "Values of a key, as of --set; all combinations are run; may be repeated",
+             "KEY=V1,V2,...");
+    add_list("--sample", sweep_.request.sample,
+             "Random values of a key: uniform(a,b), log_uniform(a,b), integer(a,b), normal(mean,deviation); may be repeated",
+             "KEY=uniform(a,b)");
+    sweep->add_option("--count", sweep_.request.count, "Number of samples, each with every combination")
+        ->check(CLI::Range(1, kMostRuns))
+        ->type_name("N");
+    sweep->add_option("--seed", sweep_.request.seed, "Seed of the samples, 0 by default")->check(is_seed)->type_name("S");
+    sweep->add_option("--out", sweep_.out, "Folder of the sweep; the same command goes on with what is there")->type_name("DIR");
+    add_scene_options(sweep, sweep_.scene);
+    sweep
+        ->add_option("--format", sweep_.formats,
+                     "Frames of each run, as of run; none, the default: diagnostics.csv and run.json alone")
+        ->delimiter(',')
+        ->check(CLI::IsMember(run_formats()))
+        ->type_name("FORMAT,...");
+    sweep->add_option("--frames", sweep_.frames, "Number of frames, instead of the scene's duration")
+        ->check(CLI::Range(1, kMostFrames))
+        ->type_name("N");
+    sweep->add_option("--checkpoint", sweep_.checkpoint, "Seconds between two checkpoints of a run, 60 by default; 0: none")
+        ->check(is_interval)
+        ->type_name("SECONDS");
+    sweep
+        ->add_option("--jobs", sweep_.jobs,
+                     "Runs at the same time, by default one for each core; on Slurm: of a task, 1 by default")
+        ->check(CLI::Range(1, kMaxThreads))
+        ->type_name("N");
+    sweep->add_flag("--retry-failed", sweep_.retry_failed, "Run those again that failed");
+    sweep->add_option("--engine", sweep_.engine, "local, the default: processes; slurm: an array job")
+        ->check(CLI::IsMember(std::vector<std::string>{"local", "slurm"}))
+        ->type_name("ENGINE");
+    sweep->add_option("--array-size", sweep_.array_size, "Tasks of the array job, which share the runs; needed with --engine slurm")
+        ->check(CLI::Range(1, kMostRuns))
+        ->type_name("N");
+    const auto add_slurm = [&](const char* name, std::string& value, const char* text) {
+      sweep->add_option(name, value, text)->check(is_slurm_word)->type_name("TEXT");
+    };
+    add_slurm("--account", sweep_.slurm.account, "Account of the array job");
+    add_slurm("--partition", sweep_.slurm.partition, "Partition of the array job");
+    add_slurm("--time", sweep_.slurm.time, "Time limit of a task of the array job, as 2:00:00");
+    sweep->add_flag("--dry-run", sweep_.dry_run, "Print the script of the array job, or the commands of the runs; write nothing");
+    sweep->add_flag("--quiet", sweep_.quiet, "Print errors only");
+    sweep->add_option("--status", sweep_.status, "Print what is done of the sweep in a folder, and the time left")
+        ->type_name("DIR");
+    sweep->add_option("--task", sweep_.task)->check(CLI::Range(0, kMostRuns))->group("");  // hidden: for the script of an array job
+  }
+
+  /// Throws UsageError.
+  void check_sweep() {
+    std::string problems;
+    const auto refuse_without = [&](const std::string& value, const char* text) {
+      if (value.empty()) problems += fmt::format("{} is missing; see sprung sweep --help\n", text);
+    };
+    if (!sweep_.status.empty()) {
+      if (!sweep_.scene.file.empty() || !sweep_.out.empty()) {
+        problems = "--status DIR goes with no scene and no --out; leave them out";
+      }
+    } else {
+      refuse_without(sweep_.out, "--out DIR");
+      if (!sweep_.task) refuse_without(sweep_.scene.file, "the scene file");
+      const bool on_slurm = sweep_.engine == "slurm";
+      if (!sweep_.task && on_slurm && !sweep_.array_size) {
+        problems += "--engine slurm needs the number of tasks that share the runs; give --array-size N\n";
+      }
+      const SlurmOptions& slurm = sweep_.slurm;
+      if (!on_slurm && (sweep_.array_size || !(slurm.account + slurm.partition + slurm.time).empty())) {
+        problems += "--array-size, --account, --partition and --time are of array jobs; add --engine slurm, or leave them out\n";
+      }
+    }
+    const bool has_none = std::ranges::find(sweep_.formats, "none") != sweep_.formats.end();
+    if (has_none && sweep_.formats.size() > 1) problems += "--format none goes with no other format; leave it out\n";
+    if (!problems.empty()) throw UsageError(problems);
+  }
+
   void add_materials() {
     CLI::App* command = app_.add_subcommand("materials", "Lists the materials of bodies, or the values of one and their sources");
     command->add_option("NAME", materials_.name, "Name of a material; or cloth, rope or solid: all of this kind; all by default")
@@ -217,6 +310,11 @@ class Parser {
     return formats;
   }
 
+  static std::string is_seed(const std::string& text) {
+    const bool good = !text.empty() && std::ranges::all_of(text, [](unsigned char letter) { return std::isdigit(letter) != 0; });
+    return good ? "" : "must be a whole number from 0";
+  }
+
   static std::string is_interval(const std::string& text) {
     char* end = nullptr;
     const double seconds = std::strtod(text.c_str(), &end);
@@ -229,6 +327,13 @@ class Parser {
       return std::isalnum(letter) != 0 || letter == '-' || letter == '_';
     });
     return good ? "" : "must be letters, digits, - and _";
+  }
+
+  static std::string is_slurm_word(const std::string& text) {
+    const bool good = !text.empty() && std::ranges::all_of(text, [](unsigned char letter) {
+      return std::isalnum(letter) != 0 || std::string_view("-_.:,").find(static_cast<char>(letter)) != std::string_view::npos;
+    });
+    return good ? "" : "must be letters, digits, and - _ . : ,";
   }
 
   static void add_scene(CLI::App* command, SceneSource& scene) {
@@ -281,6 +386,7 @@ class Parser {
   ViewOptions view_;
   ExportOptions export_;
   PlotOptions plot_;
+  SweepOptions sweep_;
   std::vector<std::string> unused_mesh_paths_;
   MaterialsOptions materials_;
   std::string help_of_;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "scene/load_scene.h"
+#include "sweep/slurm.h"
+#include "sweep/sweep_plan.h"
 
 #include <optional>
 #include <stdexcept>
@@ -56,6 +58,24 @@ struct PlotOptions {
   bool overwrite = false;
 };
 
+struct SweepOptions {
+  SceneSource scene;
+  SweepRequest request;
+  std::string out;
+  std::vector<std::string> formats{"none"};
+  std::optional<int> frames;
+  double checkpoint = 60.0;  ///< as of RunOptions
+  std::string engine = "local";
+  std::optional<int> jobs;        ///< processes at the same time; by default all cores, of a task of Slurm one
+  std::optional<int> array_size;  ///< tasks of Slurm
+  SlurmOptions slurm;
+  bool dry_run = false;
+  bool retry_failed = false;
+  bool quiet = false;
+  std::string status;       ///< folder of a sweep to describe; empty: run one
+  std::optional<int> task;  ///< of an array job, of which this process does the runs
+};
+
 struct MaterialsOptions {
   std::string name;  ///< empty: all
 };
@@ -66,8 +86,8 @@ struct PrintOptions {
   bool is_usage_error = false;  ///< there was no command: the text goes to standard error
 };
 
-using Command =
-    std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, PlotOptions, MaterialsOptions, PrintOptions>;
+using Command = std::variant<RunOptions, ValidateOptions, InfoOptions, ViewOptions, ExportOptions, PlotOptions, SweepOptions,
+                             MaterialsOptions, PrintOptions>;
 
 /// An invalid command line; one problem per line.
 class UsageError : public std::runtime_error {

@@ -30,6 +30,10 @@ ExitCode export_run(const ExportOptions& options);
 /// FileError without gnuplot, or if the picture cannot be written.
 ExitCode plot(const PlotOptions& options);
 
+/// Runs a scene for many values, or prints what is done of it. Throws InputError if values or the folder do not fit, FileError if
+/// files cannot be written or Slurm cannot be asked. ExitCode::diverged if runs failed.
+ExitCode sweep(const SweepOptions& options);
+
 /// Writes a run as one HTML file. Throws InputError if the folder is no run, and in a program that was built without the viewer;
 /// FileError if the file cannot be written.
 void export_html(const std::string& folder, const std::filesystem::path& file);

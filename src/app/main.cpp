@@ -23,6 +23,7 @@ struct Execute {
   ExitCode operator()(const ViewOptions& options) const { return view(options); }
   ExitCode operator()(const ExportOptions& options) const { return export_run(options); }
   ExitCode operator()(const PlotOptions& options) const { return plot(options); }
+  ExitCode operator()(const SweepOptions& options) const { return sweep(options); }
   ExitCode operator()(const MaterialsOptions& options) const { return print_materials(options); }
   ExitCode operator()(const PrintOptions& options) const { return print(options); }
 };

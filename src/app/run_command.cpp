@@ -54,9 +54,6 @@ Formats exporters_among(const Formats& formats) {
 void check_formats(const Formats& formats, bool writes_record) {
   if (has(formats, kNoFormat) && formats.size() > 1) throw UsageError("--format none goes with no other format; leave it out");
   if (writes_record) return;
-  if (has(formats, kNoFormat)) {
-    throw UsageError("--format none with \"record\": false writes no frames; leave out one of them");
-  }
   for (const std::string& format : exporters_among(formats)) {
     if (make_exporter(format, {})->writes_each_frame()) continue;
     throw UsageError(fmt::format("--format {} is made from record.bin at the end of the run; leave out \"record\": false", format));

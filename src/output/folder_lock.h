@@ -25,4 +25,8 @@ class FolderLock {
   int descriptor_;
 };
 
+/// Whether a process holds the lock of a folder. False for a folder that does not exist. It takes the lock for a moment to know, so
+/// call it only where no process is about to lock the folder.
+[[nodiscard]] bool is_locked(const std::filesystem::path& folder);
+
 }  // namespace sprung

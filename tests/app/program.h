@@ -29,6 +29,7 @@ class Program {
  public:
   struct Limits {
     std::optional<rlim_t> file_size{};                               ///< no file may grow beyond it [bytes]
+    std::optional<std::string> input{};                              ///< file that standard input comes from
     std::optional<std::string> output{};                             ///< standard output goes here
     std::optional<int> error_descriptor{};                           ///< standard error goes here
     std::string mesh_path{};                                         ///< SPRUNG_MESH_PATH
@@ -76,6 +77,7 @@ class Program {
   }
 
   [[noreturn]] void become(const std::vector<std::string>& arguments, const Limits& limits) const {
+    if (limits.input) ::dup2(::open(limits.input->c_str(), O_RDONLY), STDIN_FILENO);
     redirect(limits.output.value_or((files_ / "out").string()), STDOUT_FILENO);
     if (limits.error_descriptor) {
       ::dup2(*limits.error_descriptor, STDERR_FILENO);

@@ -60,9 +60,11 @@ TEST(FolderLock, EndsWithAKilledProcess) {
   }
   while (!std::filesystem::exists(scratch / kLockFile) || std::filesystem::file_size(scratch / kLockFile) == 0) ::usleep(1000);
   EXPECT_THAT(refusal(scratch.path()), HasSubstr("process " + std::to_string(child)));
+  EXPECT_TRUE(is_locked(scratch.path()));
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
   EXPECT_TRUE(std::filesystem::exists(scratch / kLockFile)) << "which is why the name of the file does not count";
+  EXPECT_FALSE(is_locked(scratch.path()));
   EXPECT_EQ(refusal(scratch.path()), "");
 }
 

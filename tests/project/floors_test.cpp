@@ -20,7 +20,7 @@ using ::testing::IsEmpty;
 
 const std::map<std::string, int> kFloors = {{"base", 0},     {"geometry", 1},   {"network", 2}, {"collision", 2},
                                             {"dynamics", 3}, {"simulation", 4}, {"output", 5},  {"scene", 6},
-                                            {"viewer", 7},   {"app", 8},        {"python", 8}};
+                                            {"sweep", 7},    {"viewer", 7},     {"app", 8},     {"python", 8}};
 
 /// What the sub-folders of a folder may include of it, the lowest first. Files that stand in the folder itself are on top, and may
 /// include all of it, unless the folder has an entry here: "" names them among what others may include.
@@ -97,7 +97,7 @@ const std::vector<Library> kLibraries = {
     {"assimp/", {"geometry"}, true},
     {"tiny_obj_loader.h", {"geometry"}, true},
     {"fcl/", {"collision"}},
-    {"nlohmann/", {"geometry", "scene", "output", "viewer"}},
+    {"nlohmann/", {"geometry", "scene", "output", "sweep", "viewer"}},
     {"boost/", {"viewer"}},
     {"zlib.h", {"viewer"}, true},
     {"zip.h", {"output"}, true},
@@ -107,9 +107,10 @@ const std::vector<Library> kLibraries = {
     {"pybind11/", {"python"}},
     {"sanitizer/", {"base"}},
     {"xmmintrin.h", {"base"}},
-    {"fcntl.h", {"app", "base", "output"}},
-    {"unistd.h", {"app", "base", "output"}},
-    {"sys/", {"app", "base", "output"}},
+    {"poll.h", {"sweep"}},
+    {"fcntl.h", {"app", "base", "output", "sweep"}},
+    {"unistd.h", {"app", "base", "output", "sweep"}},
+    {"sys/", {"app", "base", "output", "sweep"}},
 };
 
 /// Standard headers have neither a dot nor a slash.
