@@ -1,5 +1,6 @@
 """The module that `cmake --install` installed."""
 import os
+import tempfile
 import unittest
 
 import sprung
@@ -14,6 +15,12 @@ class Installed(unittest.TestCase):
         one = sprung.load(os.path.join(os.environ["SPRUNG_SOURCE_DIR"], "examples", "hanging_cloth.json")).simulator()
         one.step()
         self.assertGreater(one.time, 0.0)
+
+    def test_finds_the_program_beside_it(self):
+        scene = os.path.join(os.environ["SPRUNG_SOURCE_DIR"], "examples", "two_masses.json")
+        with tempfile.TemporaryDirectory() as folder:
+            table = sprung.sweep(scene, os.path.join(folder, "swept"), vary={"bodies.masses.particle_mass": [1]}, frames=2)
+        self.assertEqual(table["status"].tolist(), ["done"])
 
 
 if __name__ == "__main__":

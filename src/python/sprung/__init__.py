@@ -12,6 +12,7 @@ SI units throughout: m, kg, s, N. The y axis points up. Arrays of points have a 
 
 - load, Scene: scenes. restore: simulators from files.
 - Simulator: step(), frame(), bodies, pins, obstacles, forces; copy(), state(), restore().
+- sweep: many runs of a scene with other values, each a process, or on Slurm; sweep_results: their table.
 - Batch: many simulators at once, on all cores. show: a running simulator in the browser.
 - NetworkBuilder: networks particle by particle, or of make_rope(), make_cloth(), make_solid() and make_mesh(), with
   make_sphere(), make_box(), make_ground() and make_mesh_obstacle() as obstacles.
@@ -30,11 +31,13 @@ from ._core import (Batch, Body, BodyShape, Network, NetworkBuilder, Obstacle, O
                     restore, show)
 from ._errors import FileError, InputError, Problem, SprungWarning, StepError
 from ._scene import load
+from ._sweep import sweep, sweep_results
 
 __all__ = [
     "Batch", "Body", "BodyShape", "FileError", "InputError", "Network", "NetworkBuilder", "Obstacle", "ObstacleShape", "Pin",
     "Problem", "Scene", "Simulator", "Springs", "SprungWarning", "State", "StepError", "Viewer", "load", "make_box",
     "make_cloth", "make_ground", "make_mesh", "make_mesh_obstacle", "make_rope", "make_solid", "make_sphere", "restore", "show",
+    "sweep", "sweep_results",
 ]
 
 for _name in __all__:

@@ -12,6 +12,7 @@ __all__ = [
     "Batch", "Body", "BodyShape", "FileError", "InputError", "Network", "NetworkBuilder", "Obstacle", "ObstacleShape", "Pin",
     "Problem", "Scene", "Simulator", "Springs", "SprungWarning", "State", "StepError", "Viewer", "load", "make_box",
     "make_cloth", "make_ground", "make_mesh", "make_mesh_obstacle", "make_rope", "make_solid", "make_sphere", "restore", "show",
+    "sweep", "sweep_results",
 ]
 
 _Path = Union[str, "os.PathLike[str]"]
@@ -27,6 +28,14 @@ _Keyframe = Union[Tuple[float, numpy.typing.ArrayLike], Tuple[float, numpy.typin
 def load(scene: Union[_Path, Mapping[str, Any]], *, overrides: Optional[Mapping[str, Any]] = None,
          mesh_paths: Union[_Path, Iterable[_Path]] = ()) -> Scene: ...
 def restore(path: _Path, *, forces: Sequence[_Force] = ..., mesh_paths: Sequence[_Path] = ...) -> Simulator: ...
+
+def sweep(scene: Union[_Path, Mapping[str, Any]], out: _Path, *, vary: Optional[Mapping[str, Iterable[Any]]] = None,
+          sample: Optional[Mapping[str, str]] = None, count: int = 0, seed: int = 0, overrides: Optional[Mapping[str, Any]] = None,
+          mesh_paths: Iterable[_Path] = (), formats: Iterable[str] = ..., frames: Optional[int] = None, jobs: Optional[int] = None,
+          retry_failed: bool = False, engine: str = "local", array_size: Optional[int] = None, account: Optional[str] = None,
+          partition: Optional[str] = None, time: Optional[str] = None,
+          progress: bool = False) -> dict[str, numpy.typing.NDArray[Any]]: ...
+def sweep_results(folder: _Path) -> dict[str, numpy.typing.NDArray[Any]]: ...
 
 def show(simulator: Simulator, *, open: bool = True, port: int = 0) -> Viewer: ...
 
