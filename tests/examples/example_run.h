@@ -16,6 +16,33 @@
 
 namespace sprung::testing {
 
+/// A CSV file by columns. An empty field, such as the distance of what is far from any obstacle, reads as 0.
+using Columns = std::map<std::string, std::vector<double>>;
+
+inline Columns read_columns(const std::filesystem::path& file) {
+  const auto fields_of = [](const std::string& line) {
+    std::vector<std::string> fields(1);
+    for (const char letter : line) {
+      if (letter == ',') {
+        fields.emplace_back();
+      } else {
+        fields.back() += letter;
+      }
+    }
+    return fields;
+  };
+  Columns columns;
+  std::istringstream lines(read_text(file));
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> names = fields_of(line);
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> values = fields_of(line);
+    for (std::size_t i = 0; i < names.size(); ++i) columns[names[i]].push_back(std::strtod(values.at(i).c_str(), nullptr));
+  }
+  return columns;
+}
+
 class ExampleRun {
  public:
   /// Runs examples/<name>.json, with more arguments of the command line if need be.
@@ -24,7 +51,7 @@ class ExampleRun {
                                        output().string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     ending_ = Program(arguments).wait();
-    if (ending_.code == 0) read_diagnostics();
+    if (ending_.code == 0) columns_ = read_columns(output() / "diagnostics.csv");
   }
 
   [[nodiscard]] std::filesystem::path output() const { return scratch_ / "frames"; }
@@ -52,33 +79,9 @@ class ExampleRun {
     return read_obj(folder / (folder.filename().string() + "." + number + ".obj"));
   }
 
-  void read_diagnostics() {
-    std::istringstream lines(read_text(output() / "diagnostics.csv"));
-    std::string line;
-    std::getline(lines, line);
-    const std::vector<std::string> names = fields(line);
-    while (std::getline(lines, line)) {
-      const std::vector<std::string> values = fields(line);
-      // An empty field, such as the distance of what is far from any obstacle, reads as 0.
-      for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]].push_back(std::strtod(values.at(i).c_str(), nullptr));
-    }
-  }
-
-  static std::vector<std::string> fields(const std::string& line) {
-    std::vector<std::string> result(1);
-    for (const char c : line) {
-      if (c == ',') {
-        result.emplace_back();
-      } else {
-        result.back() += c;
-      }
-    }
-    return result;
-  }
-
   ScratchFolder scratch_;
   Ending ending_;
-  std::map<std::string, std::vector<double>> columns_;
+  Columns columns_;
 };
 
 }  // namespace sprung::testing

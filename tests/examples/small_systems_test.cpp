@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
 namespace sprung {
 namespace {
@@ -34,6 +36,37 @@ TEST(TwoMasses, TheHeavierMassStretchesTheSpringFurther) {
   const double reached = extension(heavy, heavy.frames());
   EXPECT_GT(reached, extension(light, light.frames()));
   EXPECT_NEAR(reached, 3 * 9.81 / 20, 3 * 9.81 / 20 * std::exp(-15.0) * 2);
+}
+
+// The sweep of examples/README.md.
+TEST(TwoMasses, ASweepEndsEachSpringAsTheReadmeStates) {
+  const testing::ScratchFolder scratch;
+  const std::string scene = "examples/two_masses.json";
+  const std::vector<std::string> options{"--vary", "bodies.masses.particle_mass=0.5,1,2,4", "--vary",
+                                         "bodies.masses.springs.structural.stiffness=20,40"};
+  const std::string readme = testing::read_text(SPRUNG_SOURCE_DIR "/examples/README.md");
+  std::string command = "sprung sweep " + scene;
+  for (const std::string& word : options) command += " " + word;
+  EXPECT_THAT(readme, HasSubstr("\n" + command + " --out swept\n"));
+
+  std::vector<std::string> words{"sweep", SPRUNG_SOURCE_DIR "/" + scene, "--quiet", "--out", (scratch / "swept").string()};
+  words.insert(words.end(), options.begin(), options.end());
+  const testing::Ending ending = testing::Program(words).wait();
+  ASSERT_EQ(ending.code, 0) << ending.err;
+  const testing::Columns results = testing::read_columns(scratch / "swept/results.csv");
+  ASSERT_EQ(results.at("number").size(), 8u);
+  for (std::size_t run = 0; run < 8; ++run) {
+    const double mass = results.at("bodies.masses.particle_mass")[run];
+    const double stiffness = results.at("bodies.masses.springs.structural.stiffness")[run];
+    const double stretch = mass * 9.81 / stiffness;
+    EXPECT_NEAR(results.at("max_stretch")[run], stretch, stretch * std::exp(-15.0) * 2);
+    // The swing stretch (1 - exp(-0.5 t) cos(omega t)) of Verlet's damping of 0.01 a step of 0.01 s, half a period after the start,
+    // at the nearest of the frames, which are 0.1 s apart.
+    const double omega = std::sqrt(stiffness / mass);
+    const double half_period = std::numbers::pi / omega;
+    EXPECT_GE(results.at("largest_stretch")[run], stretch * (1 + std::exp(-0.5 * (half_period + 0.05)) * std::cos(0.05 * omega)));
+    EXPECT_LE(results.at("largest_stretch")[run], stretch * (1 + std::exp(-0.5 * (half_period - 0.05))));
+  }
 }
 
 // How the energy of the rope differs from that at the start, at most and at the end.
