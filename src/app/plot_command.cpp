@@ -87,7 +87,7 @@ ExitCode plot(const PlotOptions& options) {
   for (const std::string& folder : options.folders) {
     check_exists(folder);
     check_replaces_no_file_of_run(picture, folder);
-    const RecordedRun run(folder);
+    const RecordedRun run(folder, RunParts::diagnostics);
     runs.push_back({.title = options.folders.size() == 1 ? run.title() : folder, .diagnostics = run.diagnostics()});
   }
   const ScratchFolder scratch;

@@ -100,14 +100,14 @@ RecordedBody body_of(const std::string& name, PolygonMesh mesh, Index first) {
 
 }  // namespace
 
-RecordedRun::RecordedRun(std::filesystem::path folder) : folder_(std::move(folder)) {
+RecordedRun::RecordedRun(std::filesystem::path folder, RunParts parts) : folder_(std::move(folder)) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder_, ignored)) fail_to_read(folder_, "it is no folder");
-  read_summary();
+  read_summary(parts);
   read_diagnostics();
 }
 
-void RecordedRun::read_summary() {
+void RecordedRun::read_summary(RunParts parts) {
   const std::filesystem::path file = folder_ / kRunSummaryFile;
   std::error_code error;
   const auto kind = std::filesystem::status(file, error).type();
@@ -137,6 +137,7 @@ void RecordedRun::read_summary() {
   if (frames_ < 1) fail(file, "frames_written", "is 0: the run has no frame to show");
   if (!(frame_rate_ > 0.0) || !(step_ > 0.0) || steps_per_frame_ < 1)
     fail(file, "frame_rate", "and the steps must be greater than 0");
+  if (parts == RunParts::diagnostics) return;
   if (std::filesystem::symlink_status(folder_ / kRecordFile, error).type() != std::filesystem::file_type::not_found) {
     const bool names_record = summary.contains("record") && summary["record"].is_string();
     read_record(frames_, names_record ? summary["record"].get<std::string>() : "");

@@ -5,6 +5,7 @@
 #include "output/record/recorded_model.h"
 #include "output/run_summary.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ struct BrokenSprings {
   std::vector<Index> springs;  ///< of the model, ascending
 };
 
+/// What is read of a run.
+enum class RunParts : std::uint8_t { all, diagnostics };
+
 /// A run that was written into a folder. Everything comes from its files, so the folder can be moved. Model and frames come from
 /// record.bin. Without it they come from the OBJ files: each vertex then counts as a particle, and missing() says what is not
 /// known.
@@ -33,8 +37,9 @@ struct BrokenSprings {
 class RecordedRun {
  public:
   /// Throws InputError that names what a folder lacks to be a run with at least one frame: keys of run.json, or both record.bin
-  /// and the OBJ files of its first frame. Throws FileError if run.json or a file that it needs cannot be read.
-  explicit RecordedRun(std::filesystem::path folder);
+  /// and the OBJ files of its first frame. Throws FileError if run.json or a file that it needs cannot be read. With
+  /// RunParts::diagnostics the model stays empty, a run may lack frames, and frame() must not be called.
+  explicit RecordedRun(std::filesystem::path folder, RunParts parts = RunParts::all);
 
   /// File name of the scene, or name of the folder if the run has none.
   [[nodiscard]] const std::string& title() const { return title_; }
@@ -62,7 +67,7 @@ class RecordedRun {
   [[nodiscard]] RecordedFrame frame(int number) const;
 
  private:
-  void read_summary();
+  void read_summary(RunParts parts);
   void read_record(int frames_written, const std::string& fingerprint);
   void read_obj_model(const std::vector<std::string>& patterns);
   void read_diagnostics();
