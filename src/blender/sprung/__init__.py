@@ -3,7 +3,7 @@ bl_info = {
     "name": "Sprung",
     "description": "Simulates cloths, ropes and elastic solids as springs and dampers that collide with meshes",
     "author": "The developers of Sprung",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "Properties > Object > Sprung, and Properties > Scene > Sprung",
     "category": "Physics",
