@@ -12,8 +12,10 @@ if(SPRUNG_VIEWER)
   target_link_libraries(sprung_python PRIVATE sprung::viewer)
 endif()
 target_compile_definitions(sprung_python PRIVATE SPRUNG_VERSION="${PROJECT_VERSION}")
-set_target_properties(sprung_python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${python_package}
-                                               INSTALL_RPATH "$ORIGIN/../../..")
+set_target_properties(sprung_python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${python_package})
+if(NOT SPRUNG_ONE_LIBRARY) # which the system's folder of libraries has
+  set_target_properties(sprung_python PROPERTIES INSTALL_RPATH "$ORIGIN/../../..")
+endif()
 
 file(GLOB python_files CONFIGURE_DEPENDS python/sprung/*.py python/sprung/*.pyi python/sprung/py.typed)
 file(MAKE_DIRECTORY ${python_package})
@@ -24,5 +26,5 @@ endforeach()
 
 set(SPRUNG_PYTHON_FOLDER lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/dist-packages
     CACHE STRING "Where the Python package is installed, below the prefix")
-install(TARGETS sprung_python LIBRARY DESTINATION ${SPRUNG_PYTHON_FOLDER}/sprung)
-install(FILES ${python_files} DESTINATION ${SPRUNG_PYTHON_FOLDER}/sprung)
+install(TARGETS sprung_python LIBRARY DESTINATION ${SPRUNG_PYTHON_FOLDER}/sprung COMPONENT python)
+install(FILES ${python_files} DESTINATION ${SPRUNG_PYTHON_FOLDER}/sprung COMPONENT python)

@@ -25,7 +25,7 @@ endif()
 
 run(${installed}/bin/sprung --help)
 file(GLOB shared RELATIVE ${installed}/share/sprung ${installed}/share/sprung/*)
-if(NOT shared STREQUAL "lessons;scene.schema.json;sprung_blender.zip")
+if(NOT shared STREQUAL "examples;meshes;scene.schema.json;sprung_blender.zip")
   message(FATAL_ERROR "share/sprung contains: ${shared}")
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} -E tar tf ${installed}/share/sprung/sprung_blender.zip OUTPUT_VARIABLE addon)
@@ -39,8 +39,13 @@ execute_process(COMMAND ${installed}/bin/sprung view --lesson none ERROR_VARIABL
 if(NOT listed MATCHES "choose from 1_mass_on_a_spring, .*, 6_limit_or_stiff_springs" AND NOT listed MATCHES "without the viewer")
   message(FATAL_ERROR "The installed program lists no lessons:\n${listed}")
 endif()
-foreach(file share/sprung/lessons/3_damping.json share/sprung/lessons/3_damping.txt share/sprung/scene.schema.json include/sprung/simulation/simulator.h)
+run(${installed}/bin/sprung run ${installed}/share/sprung/examples/rope_over_torus.json --frames 1 --out ${WORK_FOLDER}/rope)
+foreach(file share/sprung/scene.schema.json include/sprung/simulation/simulator.h share/bash-completion/completions/sprung
+        share/sprung/examples/hello.cpp share/sprung/examples/lessons/3_damping.txt share/sprung/meshes/waves/waves.1.obj)
   if(NOT EXISTS ${installed}/${file})
     message(FATAL_ERROR "${file} was not installed")
   endif()
 endforeach()
+if(NOT FLAGS AND NOT EXISTS ${installed}/share/man/man1/sprung.1.gz) # an instrumented program writes no man page
+  message(FATAL_ERROR "The man page was not installed")
+endif()
