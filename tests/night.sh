@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Searches for faults that CI's fixed seeds do not show, for as long as it is told: tests/night.sh MINUTES
 #
-# A third of the time each goes to the thread sanitizer over all tests, to the fuzzers with new seeds, and to random tests with new
-# seeds. Builds count. Prints for each failure the command that repeats it, and at the end how many there were; exit status 1 when
+# A third of the time each goes to the thread sanitizer over all tests, to the fuzzers with new seeds, and to the Debian packages (about
+# fifteen minutes) and random tests with new seeds. Builds count. Prints for each failure the command that repeats it, and at the end how many there were; exit status 1 when
 # there were any. Needs what tests/run.sh installs. Logs stay in build/night/.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -65,6 +65,18 @@ if examples/install_packages.sh run fuzz > $logs/packages.txt 2>&1 && build_pres
     while read -r command; do report "$command" $logs/fuzz.txt; done <<< "${commands:-tests/fuzz.sh $each}"
   fi
   echo "fuzzers: $targets targets, $each s each"
+fi
+
+if [[ $EUID -eq 0 ]] && examples/install_packages.sh package-test >> $logs/packages.txt 2>&1; then
+  code=0
+  SPRUNG_NO_SKIPS=1 until_second $total tests/packages/check.sh > $logs/debian_packages.txt 2>&1 || code=$?
+  case $code in
+    0) echo "Debian packages: they work" ;;
+    124 | 125) echo "Debian packages: the time did not suffice" ;;
+    *) report "tests/packages/check.sh" $logs/debian_packages.txt ;;
+  esac
+else
+  echo "Debian packages: skipped, because only root can make a clean Debian"
 fi
 
 seeds=0
