@@ -1,4 +1,7 @@
 # The packages for Debian, by CPack: sprung, libsprung0.2 (its number is that of the library's name), libsprung-dev and python3-sprung.
+if(NOT SPRUNG_ONE_LIBRARY)
+  message(FATAL_ERROR "The packages have one shared library: set SPRUNG_ONE_LIBRARY too, as `cmake --preset package` does.")
+endif()
 if(NOT SPRUNG_VIEWER OR NOT SPRUNG_PYTHON)
   message(FATAL_ERROR "The packages have the viewer and the Python module, which cannot be built here, as said above. "
                       "`examples/install_packages.sh run view python package` installs what they need.")
