@@ -67,9 +67,10 @@ if examples/install_packages.sh run fuzz > $logs/packages.txt 2>&1 && build_pres
   echo "fuzzers: $targets targets, $each s each"
 fi
 
-if [[ $EUID -eq 0 ]] && examples/install_packages.sh package-test >> $logs/packages.txt 2>&1; then
+if [[ $EUID -eq 0 ]]; then
   code=0
-  SPRUNG_NO_SKIPS=1 until_second $total tests/packages/check.sh > $logs/debian_packages.txt 2>&1 || code=$?
+  { examples/install_packages.sh package-test && SPRUNG_NO_SKIPS=1 until_second $total tests/packages/check.sh; } \
+    > $logs/debian_packages.txt 2>&1 || code=$?
   case $code in
     0) echo "Debian packages: they work" ;;
     124 | 125) echo "Debian packages: the time did not suffice" ;;
