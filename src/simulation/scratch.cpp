@@ -33,7 +33,7 @@ Workspace::Workspace(const SpringNetwork& network, const SimulatorSettings& sett
       rest(network, structure.groups, constraints.limit(), settings.gravity),
       surroundings(network, obstacles, structure.groups, settings.step, settings.gravity) {
   if (splits_dampers(settings, bounds)) {
-    const double most = most_damping_rate(std::min(kDamperInterval, settings.inner_substeps) * settings.longest_substep());
+    const double most = most_damping_rate(settings.longest_substep());
     integrator->set_dampers(material_dampers(network, most), std::min(most, bounds.material_damping));
   }
   note_touched(control.touched, structure.groups);

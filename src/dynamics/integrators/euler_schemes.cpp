@@ -27,9 +27,9 @@ class SymplecticEuler final : public Integrator {
   explicit SymplecticEuler(const SpringNetwork& network) : Integrator(network) {}
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
+    dampers().apply(state.x, dt, state);
     evaluate(state, forces, dt, total_);
     record(total_, dt, state);
-    dampers().apply_between(state.x, total_, dt, state);
     for_free_particles(network(), [&](Index i) { state.v.col(i) += dt * network().inverse_masses[i] * total_.col(i); });
     for_free_particles(network(), [&](Index i) { state.x.col(i) += dt * state.v.col(i); });
   }

@@ -59,13 +59,13 @@ class Verlet final : public Integrator {
   }
 
   void advance(SimulationState& state, const Forces& forces, double dt) override {
-    if (!forces_are_constant_) evaluate(state, forces, dt, total_);
-    record(total_, dt, state);
-    if (dampers().are_due(state)) {  // at the start, x_previous is not x - v dt
+    if (!dampers().empty()) {  // at the start, x_previous is not x - v dt
       undamped_ = state.v;
-      dampers().apply_between(state.x, total_, dt, state);
+      dampers().apply(state.x, dt, state);
       for_free_particles(network(), [&](Index i) { state.x_previous.col(i) += dt * (undamped_.col(i) - state.v.col(i)); });
     }
+    if (!forces_are_constant_) evaluate(state, forces, dt, total_);
+    record(total_, dt, state);
     set_gains(dt);
     for (const Index i : pinned_) state.x_previous.col(i) = state.x.col(i);
     const VerletStep step{.kept = kept(dt, state.substeps), .per_dt = 1.0 / dt};

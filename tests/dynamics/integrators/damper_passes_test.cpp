@@ -38,15 +38,14 @@ SpringNetwork make_network(bool pin_one) {
   return of_material(std::move(network));
 }
 
-/// A network that the scheme advances with the dampers apart, in substeps of `dt` [s].
+/// A network that the scheme advances with the dampers apart, in steps of `dt` [s].
 class DampedRun {
  public:
-  DampedRun(const SpringNetwork& network, const IntegratorSettings& settings, double dt, int substeps = 1)
+  DampedRun(const SpringNetwork& network, const IntegratorSettings& settings, double dt)
       : network_(network), dt_(dt), integrator_(make_integrator(settings, network)), state(initial_state(network)) {
-    state.substeps = substeps;
     forces_.push_back(std::make_unique<SpringForce>(network, springs_without_material_dampers(network)));
     forces_.push_back(std::make_unique<BendingAngleForce>(network, bends_without_material_dampers(network)));
-    const double most = most_damping_rate(std::min(substeps, kDamperInterval) * dt);
+    const double most = most_damping_rate(dt);
     integrator_->set_dampers(material_dampers(network, most), std::min(most, spectral_bounds(network).material_damping));
   }
 
@@ -54,8 +53,7 @@ class DampedRun {
 
   void advance(int steps) {
     for (int k = 0; k < steps; ++k) {
-      for (state.substep = 0; state.substep < state.substeps; ++state.substep) integrator_->advance(state, forces_, dt_);
-      state.substep = 0;
+      integrator_->advance(state, forces_, dt_);
       ++state.step;
     }
   }
@@ -87,37 +85,37 @@ double kinetic(const SpringNetwork& network, const Points& v) {
   return 0.5 * network.masses.dot(v.colwise().squaredNorm().transpose());
 }
 
-// For fast modes, P lies between -1/5 and 1/5, the extremes of a Chebyshev polynomial between its roots. The polynomial falls to
-// the upper one at the rate at which its argument is 1, at most 2.2 / dt.
-TEST(DamperSeries, GivesNoModeEnergyAndDampsWhatIsFast) {
+// For fast modes, P lies between (10.8 - 1) / 15.8 and (10.8 + 1) / 15.8, the extremes of a Chebyshev polynomial between its roots.
+// The polynomial falls to the upper one at the rate at which its argument is 1, at most 0.3 / dt: exp(-0.3) is 0.74.
+TEST(DamperSeries, NeverTurnsAMotionRoundAndDampsWhatIsFast) {
   constexpr double kStep = 0.1;
   for (double rate = 1.0; rate <= most_damping_rate(kStep); rate *= 1.3) {
     const DamperSeries series = damper_series(kStep, rate);
     EXPECT_LE(series.passes.size(), kMostDamperPasses);
     for (int k = 0; k <= 1000; ++k) {
       const double of_mode = rate * k / 1000.0;
-      EXPECT_GE(series.factor(of_mode), -0.2 - 1e-9) << rate << " " << of_mode;
-      EXPECT_LE(series.factor(of_mode), of_mode * kStep > 2.2 ? 0.2 + 1e-9 : 1.0 + 1e-12) << rate << " " << of_mode;
+      EXPECT_GE(series.factor(of_mode), 9.8 / 15.8 - 1e-9) << rate << " " << of_mode;
+      EXPECT_LE(series.factor(of_mode), of_mode * kStep > 0.5 ? 11.8 / 15.8 + 1e-9 : 1.0 + 1e-12) << rate << " " << of_mode;
     }
   }
 }
 
-// exp(-rate dt) to the first order: the second derivative of P is at most dt^2, as that of the exponential, so that a mode of the
-// rate 0.01 / dt differs by 1e-4 at most.
+// exp(-rate dt) to the first order: the second derivative of P is at most 6 dt^2, so that a mode of the rate 0.01 / dt differs by
+// 3e-4 at most.
 TEST(DamperSeries, DampsSlowModesByTheirRate) {
-  for (const double fastest : {0.3, 3.0, 30.0, 60.0, 600.0}) {
-    EXPECT_NEAR(damper_series(1.0, fastest).factor(0.01), std::exp(-0.01), 1e-4) << fastest;
+  for (const double fastest : {0.3, 3.0, 30.0, 60.0}) {
+    EXPECT_NEAR(damper_series(1.0, fastest).factor(0.01), std::exp(-0.01), 3e-4) << fastest;
     EXPECT_NEAR(damper_series(1.0, fastest).factor(0.0), 1.0, 1e-12) << fastest;
   }
 }
 
-// What s passes bear is (w0 + 1) T_s'(w0) / 5 with T_s(w0) = 5: 1.2, 3.79, 8.06, 14.03.
+// What s passes bear is (w0 + 1) T_s'(w0) / 15.8 with T_s(w0) = 5: 0.38, 1.2, 2.55, 4.45.
 TEST(DamperSeries, HasAsFewPassesAsTheRootOfTheRateNeeds) {
-  EXPECT_EQ(damper_series(1.0, 1.19).passes.size(), 1);
-  EXPECT_EQ(damper_series(1.0, 3.7).passes.size(), 2);
-  EXPECT_EQ(damper_series(1.0, 8.0).passes.size(), 3);
-  EXPECT_EQ(damper_series(1.0, 14.0).passes.size(), 4);
-  EXPECT_EQ(damper_series(1.0, most_damping_rate(1.0)).passes.size(), kMostDamperPasses);
+  EXPECT_EQ(damper_series(1.0, 0.37).passes.size(), 1);
+  EXPECT_EQ(damper_series(1.0, 1.1).passes.size(), 2);
+  EXPECT_EQ(damper_series(1.0, 2.5).passes.size(), 3);
+  EXPECT_EQ(damper_series(1.0, 4.4).passes.size(), 4);
+  EXPECT_EQ(damper_series(1.0, 1e9).passes.size(), kMostDamperPasses);
 }
 
 TEST(DamperPasses, KeepMomentumAndSpinAndTakeEnergy) {
@@ -179,40 +177,31 @@ TEST(DamperPasses, ConvergeToTheDecayOfADamper) {
   }
 }
 
-// A uniform acceleration changes no length and no angle, so that no damper acts on what it gives from rest.
-TEST(DamperPasses, LeaveFreeFallAlone) {
-  const SpringNetwork network = make_network(false);
-  DamperPasses passes(network);
-  passes.set(material_dampers(network, most_damping_rate(1.0)), most_damping_rate(1.0));
-  SimulationState state = initial_state(network);
-  state.v.setZero();
-  const Points weights = Vector3(0.0, -9.81, 0.0) * network.masses.transpose();
-  passes.apply_between(state.x, weights, 1.0, state);
-  EXPECT_LE(state.v.cwiseAbs().maxCoeff(), 1e-13);
-}
-
-// In a step of 10 substeps they are due in substeps 0, 4 and 8, for 4, 4 and 2 substeps.
-TEST(DamperPasses, ActOnceInFourSubstepsForAllOfThem) {
-  constexpr int kSubsteps = 10;
-  constexpr double kStep = 1e-3;
-  SpringNetwork network = of_material(make_pair(1.0, 0.0, 1.0, 2.0));
-  network.velocities.col(1) = Vector3(0.1, 0.0, 0.0);
-  DamperPasses passes(network);
-  passes.set(material_dampers(network, most_damping_rate(1.0)), spectral_bounds(network).material_damping);
-  SimulationState state = initial_state(network);
-  state.substeps = kSubsteps;
-  double factor = 1.0;
-  for (state.substep = 0; state.substep < kSubsteps; ++state.substep) {
-    EXPECT_EQ(passes.are_due(state), state.substep % 4 == 0);
-    passes.apply(state.x, kStep, state);
-    if (state.substep % 4 == 0) factor *= 1.0 - 2.0 * 2.0 * kStep * (state.substep < 8 ? 4 : 2);  // one pass each: explicit Euler
-    EXPECT_NEAR(state.v(0, 1) - state.v(0, 0), 0.1 * factor, 1e-15) << state.substep;
+// What rests against a constraint has no velocity at the begin of a step. Its forces then act in full: dampers that weakened them
+// would shift the equilibrium. Many dampers at a high rate.
+TEST(DamperPasses, LeaveWhatForcesGiveFromRest) {
+  SpringNetwork damped = make_network(true);
+  damped.velocities.setZero();
+  for (double& damping : damped.springs.damping) damping = 50.0;
+  for (double& rest : damped.springs.rest_length) rest *= 0.5;
+  SpringNetwork plain = damped;
+  std::ranges::fill(plain.springs.damping, 0.0);
+  std::ranges::fill(plain.angle_bends.damping, 0.0);
+  for (const IntegratorSettings& settings : kSplitting) {
+    const double dt = 0.1 * largest_stable_step(settings, spectral_bounds(plain));
+    DampedRun with(damped, settings, dt);
+    DampedRun without(plain, settings, dt);
+    for (DampedRun* run : {&with, &without}) {
+      run->start();
+      run->advance(1);
+    }
+    EXPECT_LE((with.state.x - without.state.x).norm(), 1e-15 * without.state.x.norm()) << settings.index();
+    EXPECT_GT(without.state.v.norm(), 0.0);
+    EXPECT_LE((with.state.v - without.state.v).norm(), 1e-12 * without.state.v.norm()) << settings.index();
   }
 }
 
-// Springs and dampers whose modes differ, so that no mode of the one is one of the other. Dampers that act once in some substeps
-// meet modes that are then at the same phase each time: these would gain energy if positions and velocities were of two times.
-// Springs at rest that move little are linear.
+// Springs and dampers whose modes differ, so that no mode of the one is one of the other.
 TEST(DamperPasses, NeedNoSmallerStepThanTheSpringsAlone) {
   SpringNetwork network = make_network(true);
   std::mt19937 random(3);
@@ -220,21 +209,17 @@ TEST(DamperPasses, NeedNoSmallerStepThanTheSpringsAlone) {
   for (double& damping : network.springs.damping) damping = std::pow(10.0, exponent(random));
   for (Index s = 0; s < network.springs.count(); ++s) {
     network.springs.rest_length[s] =
-        (network.positions.col(network.springs.first[s]) - network.positions.col(network.springs.second[s])).norm();
+        0.5 * (network.positions.col(network.springs.first[s]) - network.positions.col(network.springs.second[s])).norm();
   }
-  std::ranges::fill(network.angle_bends.stiffness, 0.0);
-  network.velocities *= 1e-6;
   const SpectralBounds bounds = spectral_bounds(network);
   for (const IntegratorSettings& settings : kSplitting) {
     const double dt = 0.9 * largest_stable_step(settings, bounds);
     EXPECT_GT(dt, 20.0 * largest_stable_step(settings, with_all_dampers(bounds)));
-    for (const int substeps : {1, 2, 3, 5, 8, 24}) {
-      DampedRun run(network, settings, dt, substeps);
-      run.start();
-      const double before = run.energy();
-      run.advance(2400 / substeps);
-      EXPECT_LT(run.energy(), before) << settings.index() << " " << substeps;
-    }
+    DampedRun run(network, settings, dt);
+    run.start();
+    const double before = run.energy();
+    run.advance(2000);
+    EXPECT_LT(run.energy(), before) << settings.index();
   }
 }
 
