@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Searches for faults that CI's fixed seeds do not show, for as long as it is told: tests/night.sh MINUTES
 #
-# A third of the time each goes to the thread sanitizer over all tests, to the fuzzers with new seeds, and to the Debian packages (about
-# fifteen minutes) and random tests with new seeds. Builds count. Prints for each failure the command that repeats it, and at the end how many there were; exit status 1 when
-# there were any. Needs what tests/run.sh installs. Logs stay in build/night/.
+# A quarter of the time each goes to the thread sanitizer over all tests, to the address sanitizer over those of the viewer and of
+# sweeps, to the fuzzers with new seeds, and to the Debian packages (about fifteen minutes) and random tests with new seeds. Builds
+# count. Prints for each failure the command that repeats it, and at the end how many there were; exit status 1 when there were any.
+# Needs what tests/run.sh installs. Logs stay in build/night/.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [[ ! ${1:-} =~ ^[1-9][0-9]*$ ]]; then
@@ -50,16 +51,24 @@ build_preset() {
   return 1
 }
 
-third=$((total / 3))
-if build_preset $third tsan; then
-  until_second $third ctest --preset tsan --parallel "$(nproc)" > $logs/tsan.txt 2>&1
+quarter=$((total / 4))
+if build_preset $quarter tsan; then
+  until_second $quarter ctest --preset tsan --parallel "$(nproc)" > $logs/tsan.txt 2>&1
   failed_tests $logs/tsan.txt "" tsan
   echo "thread sanitizer: $(grep -c ' Passed ' $logs/tsan.txt) tests passed"
 fi
 
-if examples/install_packages.sh run fuzz > $logs/packages.txt 2>&1 && build_preset $((2 * third)) fuzz; then
+code=0
+until_second $((2 * quarter)) tests/sanitize.sh address sweep viewer > $logs/asan.txt 2>&1 || code=$?
+case $code in
+  0) echo "address sanitizer: $(grep -c ' Passed ' $logs/asan.txt) tests passed" ;;
+  124 | 125) echo "address sanitizer: the time did not suffice" ;;
+  *) report "tests/sanitize.sh address sweep viewer" $logs/asan.txt ;;
+esac
+
+if examples/install_packages.sh run fuzz > $logs/packages.txt 2>&1 && build_preset $((3 * quarter)) fuzz; then
   targets=$(tests/fuzz.sh --list | wc -l)
-  each=$(((2 * third - SECONDS) / targets)) # seconds
+  each=$(((3 * quarter - SECONDS) / targets)) # seconds
   if [[ $each -gt 0 ]] && ! tests/fuzz.sh $each > $logs/fuzz.txt 2>&1; then
     commands=$(sed -n 's/.* failed\. .*To repeat: //p' $logs/fuzz.txt)
     while read -r command; do report "$command" $logs/fuzz.txt; done <<< "${commands:-tests/fuzz.sh $each}"

@@ -15,7 +15,7 @@ address() {
   local folders=("$@")
   cmake --preset asan
   if ((${#folders[@]} == 0)); then
-    folders=(base geometry network collision dynamics simulation scene output app)
+    folders=(base geometry network collision dynamics simulation scene output sweep app)
     # Only where Boost and npm are installed.
     if grep --quiet '^SPRUNG_VIEWER_IS_BUILT:INTERNAL=ON' build/asan/CMakeCache.txt; then folders+=(viewer); fi
   fi
