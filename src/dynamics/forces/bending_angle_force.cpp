@@ -136,27 +136,42 @@ void BendingAngleForce::add_bends(const Kinematics& at, Points& forces) const {
   });
 }
 
-void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
-  struct HingeMotion {
-    std::array<Vector3, 4> gradient;
-    double deviation;  ///< [rad]
-    double rate;       ///< of the deviation [1/s], times `share`
-    double share;      ///< of dampers, at most 1: no gradient times it is longer than at rest
-  };
+void BendingAngleForce::hold(const Points& positions) {
+  held_.resize(static_cast<std::size_t>(network_.hinges.count()));
+  measure_hinges(positions, held_.data());
+}
+
+void BendingAngleForce::measure_hinges(const Points& x, HingeShape* shapes) const {
   const Hinges& hinges = network_.hinges;
-  const FaceBends& faces = network_.face_bends;
-  const auto motions =
-      std::make_unique_for_overwrite<HingeMotion[]>(static_cast<std::size_t>(hinges.count()));  // NOLINT(*-c-arrays)
   parallel_chunks(hinges.count(), kHingesAtOnce, [&](Index begin, Index end) {
     for (Index hinge = begin; hinge < end; ++hinge) {
       if (faces_of_hinge_[hinge][0].face == kNone) continue;
-      const HingeAngle angle(hinges, hinge, at.x);
-      HingeMotion& motion = motions[hinge];
-      motion = {.gradient = angle.gradient(), .deviation = faces_resist_ ? angle.deviation() : 0.0, .rate = 0.0, .share = 1.0};
-      if (!faces_damp_) continue;
-      motion.share = share_of(motion.gradient, hinges.weights[hinge]);
-      for (std::size_t i = 0; i < 4; ++i) motion.rate += motion.gradient[i].dot(at.v.col(hinges.particles[hinge][i]));
-      motion.rate *= motion.share;
+      const HingeAngle angle(hinges, hinge, x);
+      HingeShape& shape = shapes[hinge];
+      shape = {.gradient = angle.gradient(), .deviation = faces_resist_ ? angle.deviation() : 0.0, .share = 1.0};
+      if (faces_damp_) shape.share = share_of(shape.gradient, hinges.weights[hinge]);
+    }
+  });
+}
+
+void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
+  const Hinges& hinges = network_.hinges;
+  const FaceBends& faces = network_.face_bends;
+  std::unique_ptr<HingeShape[]> measured;  // NOLINT(*-c-arrays)
+  const HingeShape* shapes = held_.data();
+  if (held_.empty()) {
+    measured = std::make_unique_for_overwrite<HingeShape[]>(static_cast<std::size_t>(hinges.count()));  // NOLINT(*-c-arrays)
+    measure_hinges(at.x, measured.get());
+    shapes = measured.get();
+  }
+  std::vector<double> rates_of_hinges(faces_damp_ ? static_cast<std::size_t>(hinges.count())
+                                                  : 0);  // of deviations [1/s], times `share`
+  parallel_chunks(static_cast<Index>(rates_of_hinges.size()), kHingesAtOnce, [&](Index begin, Index end) {
+    for (Index hinge = begin; hinge < end; ++hinge) {
+      if (faces_of_hinge_[hinge][0].face == kNone) continue;
+      double rate = 0.0;
+      for (std::size_t i = 0; i < 4; ++i) rate += shapes[hinge].gradient[i].dot(at.v.col(hinges.particles[hinge][i]));
+      rates_of_hinges[hinge] = rate * shapes[hinge].share;
     }
   });
   // Of the sides of each face.
@@ -172,9 +187,9 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
       for (Index side = 0; side < 3; ++side) {
         const Index hinge = faces.hinges[face][static_cast<std::size_t>(side)];
         if (hinge == kNone) continue;
-        deviations[side] = motions[hinge].deviation;
-        rates[side] = motions[hinge].rate;
-        shares[side] = motions[hinge].share;
+        deviations[side] = shapes[hinge].deviation;
+        shares[side] = shapes[hinge].share;
+        if (faces_damp_) rates[side] = rates_of_hinges[hinge];
       }
       Vector3& moment = moments[face];
       if (faces_resist_) moment = constants_.stiffness[element] * (curvature.transpose() * (curvature * deviations));
@@ -187,7 +202,7 @@ void BendingAngleForce::add_hinges(const Kinematics& at, Points& forces) const {
     for (const auto& [face, side] : faces_of_hinge_[hinge]) {
       if (face != kNone) moment += moments[face][side];
     }
-    const std::array<Vector3, 4>& gradient = motions[hinge].gradient;
+    const std::array<Vector3, 4>& gradient = shapes[hinge].gradient;
     for (std::size_t i = 0; i < 4; ++i) add_to(hinges.particles[hinge][i], -(moment * gradient[i]));
   });
 }

@@ -34,6 +34,11 @@ class BendingAngleForce final : public Force {
   BendingAngleForce(const SpringNetwork& network, ElementConstants constants);
 
   [[nodiscard]] std::string name() const override { return "angle bends"; }
+
+  /// Keeps the gradients of hinges, which take most of the time.
+  void hold(const Points& positions) override;
+
+  /// Requires the positions of the last hold(), if there was any.
   void add(const Kinematics& at, Points& forces) const override;
   void couple(std::vector<ParticlePair>& pairs) const override;
 
@@ -53,6 +58,11 @@ class BendingAngleForce final : public Force {
   [[nodiscard]] double capacity() const override;
 
  private:
+  struct HingeShape {
+    std::array<Vector3, 4> gradient;
+    double deviation;  ///< [rad]; 0 if no face resists
+    double share;      ///< of dampers, at most 1: no gradient times it is longer than at rest
+  };
   struct FaceSide {
     Index face = kNone;
     Index side = 0;
@@ -61,6 +71,7 @@ class BendingAngleForce final : public Force {
   [[nodiscard]] bool acts(std::size_t element) const;
   void assign_faces();
   void add_bends(const Kinematics& at, Points& forces) const;
+  void measure_hinges(const Points& x, HingeShape* shapes) const;
   void add_hinges(const Kinematics& at, Points& forces) const;
   void add_face_derivatives(Index face, const Points& x, ForceDerivatives& derivatives) const;
 
@@ -73,6 +84,7 @@ class BendingAngleForce final : public Force {
   std::vector<std::array<FaceSide, 2>> faces_of_hinge_;  ///< by hinge, those that act
   bool faces_resist_ = false;                            ///< whether any has stiffness
   bool faces_damp_ = false;
+  std::vector<HingeShape> held_;  ///< empty until hold()
 };
 
 }  // namespace sprung

@@ -32,15 +32,15 @@ class HingeAngle {
   };
 
   static Triangle triangle_of(const Vector3& doubled_area, double rest_area);
-  [[nodiscard]] double angle_from_rest() const;  ///< theta minus the angle at rest [rad]
+  [[nodiscard]] double angle_from(double rest_angle) const;
 
   std::array<Vector3, 4> x_;
   Vector3 edge_;
   double length_;  ///< of the edge [m]
   Triangle left_;
   Triangle right_;
-  double rest_angle_;
   bool has_angle_;
+  double angle_from_rest_;  ///< theta minus the angle at rest [rad]
 };
 
 }  // namespace sprung

@@ -283,6 +283,19 @@ SpringNetwork large_sheet() {
   return network_of(mesh_of(vertices, triangles), kDampingTime);
 }
 
+TEST(Hinges, HaveTheSameBitsAtHeldPositions) {
+  const SpringNetwork sheet = large_sheet();
+  BendingAngleForce held(sheet);
+  for (unsigned trial = 0; trial < 4; ++trial) {
+    const Points x = sheet.positions + random_points(sheet.particle_count(), trial / 2, 0.003);
+    const Points v = random_points(sheet.particle_count(), 10 + trial, 1.0);
+    if (trial % 2 == 0) held.hold(x);
+    Points forces = Points::Zero(3, sheet.particle_count());
+    held.add({.x = x, .v = v}, forces);
+    EXPECT_EQ(forces, forces_of(sheet, x, v)) << trial;
+  }
+}
+
 TEST(Hinges, HaveTheSameBitsForAnyNumberOfThreads) {
   const SpringNetwork sheet = large_sheet();
   const Points x = sheet.positions + random_points(sheet.particle_count(), 3, 0.003);
