@@ -26,7 +26,7 @@ def texts(notebook):
 
 
 def pictures(notebook):
-    return [sum("image/png" in output.get("data", {}) for output in cell.outputs)
+    return [sum("image/svg+xml" in output.get("data", {}) for output in cell.outputs)
             for cell in notebook.cells if cell.cell_type == "code"]
 
 

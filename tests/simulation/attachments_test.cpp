@@ -74,6 +74,24 @@ class Attached : public ::testing::TestWithParam<std::size_t> {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Attached, ::testing::Range(std::size_t{0}, all_integrators().size()));
 
+// RK4 and both other Euler schemes do not keep the angular momentum of springs.
+std::vector<std::size_t> symplectic_schemes() {
+  std::vector<std::size_t> schemes;
+  for (std::size_t k = 0; k < all_integrators().size(); ++k) {
+    const IntegratorSettings scheme = all_integrators()[k];
+    if (std::holds_alternative<ExplicitEulerSettings>(scheme) || std::holds_alternative<RungeKutta4Settings>(scheme) ||
+        std::holds_alternative<ImplicitEulerSettings>(scheme)) {
+      continue;
+    }
+    schemes.push_back(k);
+  }
+  return schemes;
+}
+
+class AttachedSymplectically : public Attached {};
+
+INSTANTIATE_TEST_SUITE_P(Integrators, AttachedSymplectically, ::testing::ValuesIn(symplectic_schemes()));
+
 // Rods between particles, a rod of length 0, one that winches its ends together, and springs. A velocity of Verlet has the rounding
 // of positions of some metres, 2e-16 m, divided by the step of 8 ms: 3e-14 m/s, in a random walk of 128 steps 3e-13 m/s.
 TEST_P(Attached, MomentumOfFreeBodiesIsKept) {
@@ -93,13 +111,7 @@ TEST_P(Attached, MomentumOfFreeBodiesIsKept) {
   EXPECT_GT(largest, 0.5);
 }
 
-// RK4 and both other Euler schemes do not keep the angular momentum of springs.
-TEST_P(Attached, AngularMomentumOfFreeBodiesIsKeptBySymplecticSchemes) {
-  const IntegratorSettings scheme = integrator();
-  if (std::holds_alternative<ExplicitEulerSettings>(scheme) || std::holds_alternative<RungeKutta4Settings>(scheme) ||
-      std::holds_alternative<ImplicitEulerSettings>(scheme)) {
-    GTEST_SKIP();
-  }
+TEST_P(AttachedSymplectically, KeepTheAngularMomentumOfFreeBodies) {
   NetworkBuilder builder = two_tetrahedra();
   builder.add_attachment({.name = "rods", .particles = {0, 1}, .second = ParticleEnds{{5, 6}}});
   builder.add_attachment({.name = "spring", .particles = {3}, .second = ParticleEnds{{7}}, .stiffness = 15.0, .damping = 0.1});

@@ -4,7 +4,7 @@
 # installs it.
 set -euo pipefail
 
-work=$(mktemp --directory --tmpdir sprung-slurm-XXXXXX)
+work=$(mktemp --directory)
 started=()
 
 finish() {
