@@ -230,7 +230,7 @@ void bind_builder(py::module_& module) {
         settings.steps_per_frame = steps_per_frame;
         settings.gravity = vector_of(gravity, "gravity");
         settings.integrator = integrator_of(integrator);
-        settings.record_forces = record_forces;
+        settings.record_forces = settings.record_contact_forces = record_forces;
         settings.sleep = sleep;
         auto simulator = std::make_shared<ScriptedSimulator>(
             Simulator(network.cast<const SpringNetwork&>(), settings, std::move(obstacles)), nullptr);
@@ -245,8 +245,8 @@ void bind_builder(py::module_& module) {
 --
 
 Of a network. step [s], gravity [m/s^2]; integrator: explicit_euler, symplectic_euler, verlet, velocity_verlet, runge_kutta_4 or
-implicit_euler; obstacles: a list of ObstacleShape. record_forces: for forces(). sleep: bodies at rest cost nothing. Raises
-InputError for a step that is too large.)");
+implicit_euler; obstacles: a list of ObstacleShape. record_forces: for forces() and contact_forces(). sleep: bodies at rest cost
+nothing. Raises InputError for a step that is too large.)");
 }
 
 }  // namespace sprung::python

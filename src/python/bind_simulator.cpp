@@ -97,12 +97,21 @@ py::array contacts(ScriptedSimulator& simulator) {
                                                          {"normal", py::make_tuple("f8", py::make_tuple(3)), copy_of(normals)}});
 }
 
+void require_forces(bool recorded) {
+  if (recorded) return;
+  refuse("output.forces", "false", "must be true, so that steps record forces",
+         "load the scene with overrides={\"output.forces\": True}, or make the simulator with record_forces=True");
+}
+
+py::array contact_forces(ScriptedSimulator& simulator) {
+  const Simulator& read = simulator.read();
+  require_forces(read.settings().record_contact_forces);
+  return copy_of(read.contact_forces());
+}
+
 py::array forces(ScriptedSimulator& simulator) {
   const Simulator& read = simulator.read();
-  if (!read.settings().record_forces) {
-    refuse("output.forces", "false", "must be true, so that steps record forces",
-           "load the scene with overrides={\"output.forces\": True}, or make the simulator with record_forces=True");
-  }
+  require_forces(read.settings().record_forces);
   const std::vector<Reaction> reactions = read.reactions();
   std::vector<std::string> names;
   std::vector<Index> numbers;
@@ -263,9 +272,14 @@ free to move.)")
 The mean forces [N] of pins on their bodies and of attachments on their first ends, since the begin of the frame or the last
 reset_forces(): a structured array with the fields name (text) and force (3,). Forces on obstacles are not recorded. Raises
 InputError unless the scene has "output": {"forces": true}, or the simulator was made with record_forces=True.)")
+      .def("contact_forces", &contact_forces, R"(contact_forces(self)
+--
+
+The mean force of contact on each particle [N], (n, 3), in the same interval: of obstacles and other bodies, with friction. Raises
+InputError as forces().)")
       .def(
           "reset_forces", [](ScriptedSimulator& self) { self.change([](Simulator& changed) { changed.reset_forces(); }); },
-          "reset_forces(self)\n--\n\nBegin a new interval for forces(). frame() does so too.")
+          "reset_forces(self)\n--\n\nBegin a new interval for forces() and contact_forces(). frame() does so too.")
       .def("add_force", &add_force, py::arg("function"), py::kw_only(), py::arg("body") = py::none(),
            R"(add_force(self, function, *, body=None)
 --

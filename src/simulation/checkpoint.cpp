@@ -14,7 +14,7 @@ namespace sprung {
 namespace {
 
 // Raise the number of the format when the members of a state, or of what runs add, change.
-constexpr Seal kSeal{.kind = "sprungck", .what = "a checkpoint of sprung", .version = SPRUNG_VERSION " (format 2)"};
+constexpr Seal kSeal{.kind = "sprungck", .what = "a checkpoint of sprung", .version = SPRUNG_VERSION " (format 3)"};
 
 std::string text_of(const NamedCount& body) {
   return std::to_string(body.particles) + " particles and " + std::to_string(body.springs) + " springs";

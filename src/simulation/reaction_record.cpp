@@ -4,6 +4,10 @@
 
 namespace sprung {
 
+bool records_as(const SimulatorSettings& settings, const RecordedImpulses& record) {
+  return settings.record_forces == record.on() && settings.record_contact_forces == record.has_contact();
+}
+
 void collect_reactions(const std::vector<Pin>& pins, const Activity& activity, SimulationState& state) {
   if (!state.impulses.on()) return;
   for (Index i = 0; i < state.impulses.on_pinned.cols(); ++i) {

@@ -4,6 +4,7 @@
 #include "dynamics/state/simulation_state.h"
 #include "network/model/spring_network.h"
 #include "simulation/reaction.h"
+#include "simulation/settings/simulator_settings.h"
 
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace sprung {
 // A step records impulses by particle; before pins begin or end they are added up by pin. A pinned particle of mass m gains the
 // momentum m dv of its pin's motion, so its pin gives it m dv minus the impulses of all that acts on it: springs, gravity, drag,
 // the stretch limit, constraints and contact.
+
+/// Whether the record has what the settings ask for.
+[[nodiscard]] bool records_as(const SimulatorSettings& settings, const RecordedImpulses& record);
 
 /// Adds the recorded impulses on particles to the pins that hold them in an activity, and sets these to zero.
 void collect_reactions(const std::vector<Pin>& pins, const Activity& activity, SimulationState& state);

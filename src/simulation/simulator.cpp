@@ -182,7 +182,7 @@ void Simulator::restore(const SimulationState& state) {
                .can_collide = work.constraints.contacts().can_collide()},
               state);
   implementation_->stepper().restore(state);
-  if (settings().record_forces == state.impulses.on()) return;
+  if (records_as(settings(), state.impulses)) return;
   implementation_->state.impulses = implementation_->state.last_impulses = {};
   implementation_->stepper().begin_recording();
 }
@@ -443,6 +443,12 @@ Scalars Simulator::limit_tensions() const {
   const double duration = time() - state().reactions.since;
   if (!state().impulses.on() || duration <= 0.0) return Scalars::Zero(network().springs.count());
   return state().impulses.of_springs / duration;
+}
+
+Points Simulator::contact_forces() const {
+  const double duration = time() - state().reactions.since;
+  if (!state().impulses.has_contact() || duration <= 0.0) return Points::Zero(3, network().particle_count());
+  return state().impulses.of_contact / duration;
 }
 
 void Simulator::reset_forces() { implementation_->stepper().begin_recording(); }

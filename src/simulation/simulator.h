@@ -239,7 +239,12 @@ class Simulator {
   /// without the setting.
   [[nodiscard]] Scalars limit_tensions() const;
 
-  /// Begins a new interval for both.
+  /// The mean force of contact on each particle since then, with friction [N], 3 x n: of obstacles and of other elements, pinned
+  /// particles among them. Needs SimulatorSettings::record_contact_forces instead; zero without it. Truncation stops particles
+  /// that contact did not, by impulses that are not recorded. Grows with the number of particles.
+  [[nodiscard]] Points contact_forces() const;
+
+  /// Begins a new interval for all three.
   void reset_forces();
 
  private:

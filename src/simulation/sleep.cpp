@@ -192,16 +192,19 @@ bool Stepper::all_sleep() const {
 
 /// Adds the last recorded impulses of sleeping particles again.
 void Stepper::add_impulses_of_sleepers(const RecordedImpulses& before) {
-  if (!state_.impulses.on()) return;
   RecordedImpulses& last = state_.last_impulses;
   const bool all = all_sleep();
-  for (Index i = 0; i < network().particle_count(); ++i) {
-    if (all || network().is_asleep(i)) {
-      state_.impulses.on_pinned.col(i) = before.on_pinned.col(i) + last.on_pinned.col(i);
-    } else {
-      last.on_pinned.col(i) = state_.impulses.on_pinned.col(i) - before.on_pinned.col(i);
+  for (const auto member : {&RecordedImpulses::on_pinned, &RecordedImpulses::of_contact}) {
+    Points& now = state_.impulses.*member;
+    for (Index i = 0; i < now.cols(); ++i) {
+      if (all || network().is_asleep(i)) {
+        now.col(i) = (before.*member).col(i) + (last.*member).col(i);
+      } else {
+        (last.*member).col(i) = now.col(i) - (before.*member).col(i);
+      }
     }
   }
+  if (!state_.impulses.on()) return;
   const Springs& springs = network().springs;
   for (Index s = 0; s < springs.count(); ++s) {
     if (all || (network().is_asleep(springs.first[s]) && network().is_asleep(springs.second[s]))) {

@@ -201,11 +201,14 @@ class StateRules {
   }
 
   void check_impulses() {
-    require(state_.impulses.on() == state_.last_impulses.on(), "last_impulses", "", "must be there if `impulses` are");
+    const bool fit =
+        state_.impulses.on() == state_.last_impulses.on() && state_.impulses.has_contact() == state_.last_impulses.has_contact();
+    require(fit, "last_impulses", "", "must be there if `impulses` are");
     const auto is_finite = [](const auto& reaction) { return reaction.second.allFinite(); };
     require(std::ranges::all_of(state_.reactions.impulses, is_finite), "reactions.impulses", "", "must be finite");
     require_finite("reactions.since", state_.reactions.since);
     for (const auto& [key, impulses] : {std::pair("impulses", &state_.impulses), {"last_impulses", &state_.last_impulses}}) {
+      if (impulses->has_contact()) require_points(std::string(key) + ".of_contact", impulses->of_contact);
       if (!impulses->on()) continue;
       require_points(std::string(key) + ".on_pinned", impulses->on_pinned);
       const auto springs = static_cast<std::size_t>(network().springs.count() - state_.springs.broken_count());

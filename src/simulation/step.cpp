@@ -249,9 +249,20 @@ StepReport Stepper::make_substep(int inner) {
     count_step(state_);
     state_.substep = 0;
   }
-  if (work().penalty != nullptr) work().penalty->prepare(t_end);
+  if (work().penalty != nullptr) {
+    work().penalty->prepare(t_end);
+    record_penalty();
+  }
   check_state();
   return report;
+}
+
+/// The forces at the end of the substep stand for those within.
+void Stepper::record_penalty() {
+  if (!state_.impulses.has_contact()) return;
+  Points forces = Points::Zero(3, network().particle_count());
+  work().penalty->add({.x = state_.x, .v = state_.v, .time = time()}, forces);
+  state_.impulses.of_contact += dt() * forces;
 }
 
 void Stepper::set_substeps(int substeps) {

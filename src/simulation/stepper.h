@@ -126,6 +126,7 @@ class Stepper {
   void wake_with_bodies(const std::vector<char>& asleep);
   [[nodiscard]] bool disturbs_sleep(const std::vector<GroupPair>& pairs);
   [[nodiscard]] bool all_sleep() const;
+  void record_penalty();
   void add_impulses_of_sleepers(const RecordedImpulses& before);
 
   [[nodiscard]] const SpringNetwork& network() const { return scratch_.network; }

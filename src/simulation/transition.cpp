@@ -67,11 +67,13 @@ void Stepper::correct_positions(double dt) {
 
 /// Pins set the velocities of their particles before this call, so that these are not recorded as impulses.
 void Stepper::begin_recording() {
-  if (!settings().record_forces) return;
+  if (!settings().record_forces && !settings().record_contact_forces) return;
+  const Index n = network().particle_count();
   state_.reactions = {.since = time()};
-  state_.impulses = {.on_pinned = Points::Zero(3, network().particle_count()),
-                     .of_springs = Scalars::Zero(network().springs.count())};
-  if (!state_.last_impulses.on()) state_.last_impulses = state_.impulses;
+  state_.impulses.on_pinned.setZero(3, settings().record_forces ? n : 0);
+  state_.impulses.of_springs.setZero(settings().record_forces ? network().springs.count() : 0);
+  state_.impulses.of_contact.setZero(3, settings().record_contact_forces ? n : 0);
+  if (!records_as(settings(), state_.last_impulses)) state_.last_impulses = state_.impulses;
 }
 
 BeforeTransition Stepper::before_transition() const {
@@ -98,7 +100,7 @@ void Stepper::make_transition(const BeforeTransition& before) {
 
 void Stepper::adopt(const BeforeTransition& before, const Model& former) {
   note_settings(settings(), state_);
-  if (settings().record_forces != state_.impulses.on()) {
+  if (!records_as(settings(), state_.impulses)) {
     state_.impulses = {};
     state_.last_impulses = {};
     begin_recording();

@@ -123,5 +123,23 @@ class PinForces(unittest.TestCase):
         self.assertEqual(caught.exception.problems[0].key, "output.forces")
 
 
+class ContactForces(unittest.TestCase):
+    def test_at_rest_they_carry_the_weight(self):
+        floor = {"shape": {"type": "half_space", "normal": [0, 1, 0], "offset": -1}}
+        one = simulator(cloth(), overrides={"output.forces": True, "bodies.cloth.pins": [], "obstacles": {"floor": floor},
+                                            "stretch_limit": None})
+        for _ in range(200):
+            one.frame()
+        forces = one.contact_forces()
+        self.assertEqual(forces.shape, one.bodies["cloth"].particles.shape)
+        weight = one.bodies["cloth"].masses.sum() * 9.81
+        numpy.testing.assert_allclose(forces.sum(axis=0), [0, weight, 0], atol=0.05 * weight)
+
+    def test_need_the_setting(self):
+        with self.assertRaises(sprung.InputError) as caught:
+            simulator(cloth()).contact_forces()
+        self.assertEqual(caught.exception.problems[0].key, "output.forces")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -15,6 +15,7 @@ namespace {
 using testing::deforming_sheet;
 using ::testing::HasSubstr;
 using testing::kGravity;
+using testing::momentum;
 using testing::run;
 
 constexpr double kStep = 1.0e-3;       // [s]
@@ -44,8 +45,6 @@ NetworkBuilder two_tetrahedra() {
   add_tetrahedron(builder, "b", {0.9, 0.1, -0.05}, {-0.3, 0.5, 0.2}, {-1.5, 0.5, 1.0});
   return builder;
 }
-
-Vector3 momentum(const Simulator& simulator) { return simulator.state().v * simulator.network().masses; }
 
 Vector3 angular_momentum(const Simulator& simulator) {
   Vector3 sum = Vector3::Zero();

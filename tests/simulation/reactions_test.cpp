@@ -16,6 +16,8 @@ using ::testing::ElementsAre;
 using testing::ground;
 using ::testing::IsEmpty;
 using testing::kGravity;
+using testing::mass;
+using testing::momentum;
 using testing::run;
 
 using Solver = StretchLimitSettings::Solver;
@@ -80,10 +82,6 @@ SpringNetwork jelly(const Holding& /*holding*/) {
   builder.pin(63);
   return builder.build();
 }
-
-Vector3 momentum(const Simulator& simulator) { return simulator.state().v * simulator.network().masses; }
-
-double mass(const Simulator& simulator) { return simulator.network().masses.sum(); }
 
 Vector3 sum_of(const std::vector<Reaction>& reactions) {
   Vector3 sum = Vector3::Zero();

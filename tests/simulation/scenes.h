@@ -91,6 +91,12 @@ inline Obstacle rising_ball(double wait = 0.0) {
   return ball;
 }
 
+/// Of all bodies [kg m/s].
+inline Vector3 momentum(const Simulator& simulator) { return simulator.state().v * simulator.network().masses; }
+
+/// Of all bodies [kg].
+inline double mass(const Simulator& simulator) { return simulator.network().masses.sum(); }
+
 inline void run(Simulator& simulator, double seconds) {
   const auto steps = static_cast<int>(std::lround(seconds / simulator.settings().step));
   for (int i = 0; i < steps; ++i) simulator.step();

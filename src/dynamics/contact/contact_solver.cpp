@@ -64,6 +64,12 @@ bool set_particles(const Contact& contact, const Scalars& inverse_masses, Contac
   return true;
 }
 
+/// By which the contact moved its sum [m].
+template <std::size_t n>
+Vector3 displacement_by(const ContactConstraint<n>& row, const ContactGoal& goal) {
+  return goal.push * row.normal + goal.friction_change;
+}
+
 /// How an element before an obstacle turns about its pins.
 struct Lever {
   double arm = std::numeric_limits<double>::infinity();  ///< lever arm of the contact's point [m]: a displacement of this length
@@ -241,7 +247,7 @@ void ContactSolver::constrain_pushed(const StepMotion& motion, ConstrainedDirect
 template <std::size_t n>
 ElementContact ContactSolver::element_contact(const ContactConstraint<n>& row, const ContactGoal& goal) const {
   ElementContact contact{.count = n,
-                         .push = goal.push * row.normal + goal.friction_change,
+                         .push = displacement_by(row, goal),
                          .support = {.normal = row.normal, .static_friction = row.static_friction, .friction = row.friction}};
   std::copy(row.particles.begin(), row.particles.end(), contact.particles.begin());
   std::copy(row.weights.begin(), row.weights.end(), contact.weights.begin());
@@ -254,22 +260,35 @@ ElementContact ContactSolver::element_contact(const ContactConstraint<n>& row, c
 }
 
 void ContactSolver::record(const StepMotion& motion, const ImpulseRecorder& recorder) const {
+  const auto add = [&](Index particle, const Vector3& momentum) {
+    if (network_.is_fixed(particle)) recorder.add_to_pinned(particle, momentum);
+  };
   for_each_set(sets_, [&](const auto& set) {
-    set.for_pushing(
-        [&](const auto& row, const ContactGoal& goal) { record(row, goal.push * row.normal + goal.friction_change, recorder); });
-    set.for_settled([&](const auto& row, const Vector3& change) { record(row, motion.dt * change, recorder); });
+    set.for_pushing([&](const auto& row, const ContactGoal& goal) { for_shares(row, displacement_by(row, goal), add); });
+    set.for_settled([&](const auto& row, const Vector3& change) { for_shares(row, motion.dt * change, add); });
   });
 }
 
-/// `moved` [m] is the displacement of the sum that the contact made.
-template <std::size_t n>
-void ContactSolver::record(const ContactConstraint<n>& row, const Vector3& moved, const ImpulseRecorder& recorder) const {
+void ContactSolver::add_pushes(const StepMotion& motion, double factor, Points& impulses) const {
+  const auto add = [&](Index particle, const Vector3& momentum) { impulses.col(particle) += factor / motion.dt * momentum; };
+  for_each_set(sets_, [&](const auto& set) {
+    set.for_pushing([&](const auto& row, const ContactGoal& goal) { for_shares(row, displacement_by(row, goal), add); });
+  });
+}
+
+void ContactSolver::add_settled(Points& impulses) const {
+  const auto add = [&](Index particle, const Vector3& impulse) { impulses.col(particle) += impulse; };
+  for_each_set(sets_, [&](const auto& set) {
+    set.for_settled([&](const auto& row, const Vector3& change) { for_shares(row, change, add); });
+  });
+}
+
+template <std::size_t n, class Visit>
+void ContactSolver::for_shares(const ContactConstraint<n>& row, const Vector3& moved, const Visit& visit) const {
   double mobility = 0.0;
   for (std::size_t k = 0; k < n; ++k) mobility += row.weights[k] * row.weights[k] * network_.inverse_masses[row.particles[k]];
   if (mobility == 0.0) return;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (network_.is_fixed(row.particles[k])) recorder.add_to_pinned(row.particles[k], row.weights[k] / mobility * moved);
-  }
+  for (std::size_t k = 0; k < n; ++k) visit(row.particles[k], Vector3(row.weights[k] / mobility * moved));
 }
 
 std::vector<Index> ContactSolver::pushed() const {

@@ -64,6 +64,11 @@ class ContactSolver {
   /// responds to contact they are those of the passes, not of its response. Requires settle_velocities().
   void record(const StepMotion& motion, const ImpulseRecorder& recorder) const;
 
+  /// Adds to each particle `factor` times the impulses [N s], 3 x n, that contacts gave it by the passes over positions so far.
+  void add_pushes(const StepMotion& motion, double factor, Points& impulses) const;
+  /// The same for the velocities. Requires settle_velocities().
+  void add_settled(Points& impulses) const;
+
   /// Particles pushed in this step, ascending.
   [[nodiscard]] std::vector<Index> pushed() const;
 
@@ -71,8 +76,10 @@ class ContactSolver {
   [[nodiscard]] std::vector<ContactNormal> normals() const;
 
  private:
-  template <std::size_t n>
-  void record(const ContactConstraint<n>& row, const Vector3& moved, const ImpulseRecorder& recorder) const;
+  /// Calls `visit(particle, share)` for the particles of a row: `share` is that of the particle in `moved`, the change of the
+  /// row's sum by the contact, times its mass.
+  template <std::size_t n, class Visit>
+  void for_shares(const ContactConstraint<n>& row, const Vector3& moved, const Visit& visit) const;
   /// Adds contacts of n particles from index `begin` on; those before it stay.
   template <std::size_t n>
   void fill(ContactConstraintSet<n>& set, std::size_t first, const std::vector<Contact>& contacts, const StepMotion& motion);

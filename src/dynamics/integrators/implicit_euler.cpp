@@ -46,7 +46,7 @@ class ImplicitEuler final : public Integrator {
     alone_->derivatives.by_position.add_product(state.v, dt, gained_);
     gained_ *= dt;
     alone_->system.assemble(alone_->derivatives, dt);
-    if (state.impulses.on()) {
+    if (records(state)) {
       recorded_.setZero(3, gained_.cols());
       constant_ = gained_;
     }
@@ -81,7 +81,7 @@ class ImplicitEuler final : public Integrator {
     sum_forces(forces, at, gained_);
     differentiate(forces, at, linear.derivatives);
     linear.system.assemble(linear.derivatives, motion.dt);
-    if (state.impulses.on()) constant_ = motion.dt * gained_;
+    if (records(state)) constant_ = motion.dt * gained_;
     added_.resize(friction_.size());
     for_free_particles(network(), [&](Index i) {
       gained_.col(i) = motion.dt * gained_.col(i) + impulses_.col(i) - network().masses[i] * (v_.col(i) - motion.v_before.col(i));
@@ -96,11 +96,22 @@ class ImplicitEuler final : public Integrator {
     return update_element_friction(motion, constrained.element_contacts(), state) || changed;
   }
 
+  // By the balance of momentum, M (v - v(t)) - dt F.
+  void record_contact(const StepMotion& motion, SimulationState& state) const override {
+    for_free_particles(network(), [&](Index i) {
+      if (pushed_.col(i).isZero(0.0)) return;
+      const Vector3 velocity = (state.x.col(i) - motion.before.col(i)) / motion.dt;
+      state.impulses.of_contact.col(i) += network().masses[i] * (velocity - motion.v_before.col(i)) - constant_.col(i);
+    });
+  }
+
  private:
+  [[nodiscard]] static bool records(const SimulationState& state) { return state.impulses.on() || state.impulses.has_contact(); }
+
   /// Records the impulses of the linearised forces, in place of those of an earlier solve in the step. Requires the solution, and
   /// its impulses without the change of the velocities in `constant_`.
   void record_solution(const ForceDerivatives& derivatives, double dt, SimulationState& state) {
-    if (!state.impulses.on()) return;
+    if (!records(state)) return;
     derivatives.by_velocity.add_product(gained_, dt, constant_);
     derivatives.by_position.add_product(gained_, dt * dt, constant_);
     record(recorded_, -1.0, state);

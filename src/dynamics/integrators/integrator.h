@@ -50,6 +50,9 @@ class Integrator {
   virtual bool respond_to_contact(const StepMotion& motion, const Forces& forces, const Points& from,
                                   const ConstrainedDirections& constrained, SimulationState& state);
 
+  /// Adds the impulses of contact in the step, after the last response, to those of the state. Default: does nothing.
+  virtual void record_contact(const StepMotion& motion, SimulationState& state) const;
+
   /// Computes the velocities after constraints moved the particles from `advanced` (the result of `advance`) to state.x; `before`
   /// are the positions at t. Default: v += (x - advanced) / dt. A scheme whose velocities depend on the forces at the end of the
   /// step evaluates them again. Unless `needs_advanced`, `advanced` is not read.

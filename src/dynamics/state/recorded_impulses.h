@@ -1,4 +1,4 @@
-// Impulses that a simulator records on request, for the forces of pins and the tension of springs.
+// Impulses that a simulator records on request, for the forces of pins and of contact, and the tension of springs.
 #pragma once
 
 #include "base/types.h"
@@ -7,10 +7,12 @@ namespace sprung {
 
 /// Sums since the last reading. Empty in a simulator that records nothing.
 struct RecordedImpulses {
-  Points on_pinned;    ///< on each pinned particle, of all that acts on it but its pin, minus its gain of momentum [N s], 3 x n
-  Scalars of_springs;  ///< with which the stretch limit pulls each spring's ends together [N s]
+  Points on_pinned{};    ///< on each pinned particle, of all that acts on it but its pin, minus its gain of momentum [N s], 3 x n
+  Scalars of_springs{};  ///< with which the stretch limit pulls each spring's ends together [N s]
+  Points of_contact{};   ///< of contact on each particle [N s], 3 x n; recorded apart from the others
 
   [[nodiscard]] bool on() const { return on_pinned.cols() > 0; }
+  [[nodiscard]] bool has_contact() const { return of_contact.cols() > 0; }
 };
 
 /// Adds the impulses of projections to a record. A projection that moves a particle of mass m [kg] by u [m] in a step of dt [s]

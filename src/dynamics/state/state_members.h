@@ -85,7 +85,7 @@ void visit_members(S& l, const Visit& visit) {
 }
 template <Same<RecordedImpulses> S, class Visit>
 void visit_members(S& i, const Visit& visit) {
-  visit(i.on_pinned, i.of_springs);
+  visit(i.on_pinned, i.of_springs, i.of_contact);
 }
 template <Same<ReactionMemory> S, class Visit>
 void visit_members(S& r, const Visit& visit) {

@@ -62,6 +62,8 @@ struct SimulatorSettings {
   std::uint64_t seed = 0;  ///< of the directions of such pushes
   /// Whether steps record the impulses of pins and springs, for Simulator::reactions and limit_tensions. Changes no other result.
   bool record_forces = false;
+  /// Whether steps record the impulses of contact, for Simulator::contact_forces. Changes no other result.
+  bool record_contact_forces = false;
 
   /// The longest interval in which forces act [s].
   [[nodiscard]] double longest_substep() const { return step / inner_substeps; }

@@ -208,6 +208,10 @@ void StepConstraints::respond_to_contact(SimulationState& state, const Forces& f
     again = integrator_.respond_to_contact(motion(), forces, responded_, constrained_, state);
     responded_ = state.x;
   }
+  if (!state.impulses.has_contact()) return;
+  // The response balances all that pushes against contact. The pushes so far are part of it.
+  integrator_.record_contact(motion(), state);
+  contacts_.add_pushes(motion(), -1.0, state.impulses.of_contact);
 }
 
 void StepConstraints::end_substep(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report) {
@@ -219,6 +223,10 @@ void StepConstraints::end_substep(const ObstacleFrame& frame, SimulationState& s
   if (!contacts_.can_collide()) return;
   contacts_.settle_velocities(motion(), state, integrator_);
   if (recorder_.on() && projects_contacts()) contacts_.record(motion(), recorder_);
+  if (state.impulses.has_contact() && projects_contacts()) {
+    contacts_.add_pushes(motion(), 1.0, state.impulses.of_contact);
+    contacts_.add_settled(state.impulses.of_contact);
+  }
   contacts_.note_slip(motion(), state);
 }
 
