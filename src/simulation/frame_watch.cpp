@@ -64,11 +64,15 @@ std::string remedy_for_stretch(const Simulator& simulator, const FrameMemory::Mi
   }
   const bool is_gauss_seidel = limit.solver == StretchLimitSettings::Solver::gauss_seidel;
   const bool can_be_solved = is_gauss_seidel && limit.max_compression == 1.0;
-  if (can_be_solved)
-    return "Raise \"iterations\" of \"stretch_limit\", use a smaller \"step\" or, for ropes and cloths, \"solver\": \"auto\".";
-  if (simulator.stretch_solver() != "newton") return "Raise \"iterations\" of \"stretch_limit\", or use a smaller \"step\".";
+  const double times = std::max(2.0, std::ceil(missed.largest / wanted_excess(limit)));
+  if (can_be_solved || simulator.stretch_solver() != "newton") {
+    const SimulatorSettings& settings = simulator.settings();
+    const auto step = step_to_type(settings.frame_rate, settings.longest_substep() / times);
+    const std::string smaller = step ? "use a \"step\" of " + format_number(*step) + " s" : "use a smaller \"step\"";
+    return std::string("Raise \"iterations\" of \"stretch_limit\", ") +
+           (can_be_solved ? smaller + " or, for ropes and cloths, \"solver\": \"auto\"." : "or " + smaller + ".");
+  }
   // The excess that Newton's method leaves is proportional to the step; more iterations do not help.
-  const double times = std::ceil(missed.largest / wanted_excess(limit));
   return "Use a step " + format_number(times, 2) + " times smaller" +
          (moves_anything(simulator) ? ", or let pins and obstacles move more slowly." : ".");
 }
