@@ -8,13 +8,13 @@
 #include "base/files/file_writer.h"
 #include "base/format.h"
 #include "base/parallel.h"
-#include "viewer/example_scenes.h"
-#include "viewer/html_export.h"
-#include "viewer/live_session.h"
+#include "viewer/live/live_session.h"
 #include "viewer/page.h"
-#include "viewer/replay_session.h"
-#include "viewer/request_check.h"
-#include "viewer/server.h"
+#include "viewer/protocol/example_scenes.h"
+#include "viewer/replay/html_export.h"
+#include "viewer/replay/replay_session.h"
+#include "viewer/server/request_check.h"
+#include "viewer/server/server.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 #include "python/bindings.h"
 #include "python/simulator/interpreter.h"
 #include "python/simulator/scripted_simulator.h"
+#include "viewer/live/watched_session.h"
 #include "viewer/page.h"
-#include "viewer/request_check.h"
-#include "viewer/server.h"
-#include "viewer/watched_session.h"
+#include "viewer/server/request_check.h"
+#include "viewer/server/server.h"
 
 #include <atomic>
 #include <memory>

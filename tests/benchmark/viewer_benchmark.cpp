@@ -2,8 +2,8 @@
 #include "base/parallel.h"
 #include "output/run_output.h"
 #include "simulation/diagnostics.h"
-#include "viewer/live_session.h"
-#include "viewer/replay_session.h"
+#include "viewer/live/live_session.h"
+#include "viewer/replay/replay_session.h"
 #include "viewer/test_client.h"
 
 #include <benchmark/benchmark.h>

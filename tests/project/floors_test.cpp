@@ -78,6 +78,12 @@ const std::map<std::string, std::set<std::string>> kSubFloors = {
 
     {"python/simulator", {}},
 
+    {"viewer", {}},
+    {"viewer/protocol", {}},
+    {"viewer/server", {"protocol"}},
+    {"viewer/replay", {"protocol"}},
+    {"viewer/live", {"", "protocol", "server", "replay"}},
+
     {"scene/format", {}},
     {"scene/json", {}},
     {"scene/materials", {}},

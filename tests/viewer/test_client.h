@@ -1,7 +1,7 @@
 // A client of the viewer's server, and messages taken apart.
 #pragma once
 
-#include "viewer/server.h"
+#include "viewer/server/server.h"
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>

@@ -1,4 +1,4 @@
-#include "viewer/live_recording.h"
+#include "viewer/live/live_recording.h"
 
 #include "base/error.h"
 #include "base/files/binary_archive.h"

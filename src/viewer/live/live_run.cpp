@@ -1,9 +1,9 @@
-#include "viewer/live_run.h"
+#include "viewer/live/live_run.h"
 
 #include "base/error.h"
 #include "scene/json/overrides.h"
 #include "simulation/model.h"
-#include "viewer/shown_simulator.h"
+#include "viewer/live/shown_simulator.h"
 
 #include <nlohmann/json.hpp>
 
@@ -91,10 +91,17 @@ const SceneSource& read_text(SceneSource& source) {
   return source;
 }
 
+/// A page shows forces of contact.
+PreparedScene prepare(const SceneSource& source) {
+  PreparedScene prepared = prepare_scene(source);
+  prepared.built.settings.record_contact_forces = true;
+  return prepared;
+}
+
 }  // namespace
 
 // The text is read once, so that a file that changes meanwhile does not change the run.
-LiveRun::LiveRun(SceneSource source) : source_(std::move(source)), loaded_(load_scene(read_text(source_))) {
+LiveRun::LiveRun(SceneSource source) : source_(std::move(source)), loaded_(start_scene(prepare(read_text(source_)))) {
   recording_.begin(simulator(), hand_);
 }
 
@@ -113,7 +120,7 @@ bool LiveRun::change(const std::vector<std::string>& overrides) {
     std::erase_if(source.overrides, [&](const std::string& earlier) { return is_replaced(earlier, key_of(change)); });
     source.overrides.push_back(change);
   }
-  PreparedScene changed = prepare_scene(source);
+  PreparedScene changed = prepare(source);
   const bool live = std::ranges::all_of(overrides, [](const std::string& change) { return is_live(key_of(change)); });
   const bool continues = !failure_ && live && continue_with(changed, overrides);
   if (!continues) begin_anew(start_scene(std::move(changed)));
@@ -198,14 +205,14 @@ void LiveRun::keep_pins(const LiveRun& other) {
   recording_.begin(simulator(), hand_);
 }
 
-void LiveRun::reset() { begin_anew(load_scene(source_)); }
+void LiveRun::reset() { begin_anew(start_scene(prepare(source_))); }
 
 void LiveRun::step() {
   if (failure_) return;
   const auto begin = std::chrono::steady_clock::now();
   try {
     Simulator& simulator = loaded_.simulator;
-    if (simulator.settings().record_forces && simulator.state().step_in_frame == 0) simulator.reset_forces();
+    if (simulator.state().step_in_frame == 0) simulator.reset_forces();
     const StepReport report = simulator.step();
     infeasible_ = report.infeasible;
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;

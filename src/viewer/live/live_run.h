@@ -3,8 +3,8 @@
 
 #include "dynamics/forces/pull_force.h"
 #include "scene/load_scene.h"
-#include "viewer/live_recording.h"
-#include "viewer/message.h"
+#include "viewer/live/live_recording.h"
+#include "viewer/protocol/message.h"
 
 #include <filesystem>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "viewer/live_session.h"
+#include "viewer/live/live_session.h"
 
 #include "base/error.h"
 #include "base/format.h"
@@ -6,7 +6,7 @@
 #include "output/run_recorder.h"
 #include "scene/reading/scene_reader.h"
 #include "simulation/tension.h"
-#include "viewer/saving.h"
+#include "viewer/live/saving.h"
 
 #include <nlohmann/json.hpp>
 

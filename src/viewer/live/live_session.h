@@ -1,11 +1,12 @@
 // Simulates a scene for the viewer, in a thread of its own.
 #pragma once
 
-#include "viewer/example_scenes.h"
-#include "viewer/live_run.h"
-#include "viewer/page_command.h"
-#include "viewer/session.h"
-#include "viewer/text_messages.h"
+#include "viewer/live/live_run.h"
+#include "viewer/live/live_texts.h"
+#include "viewer/protocol/example_scenes.h"
+#include "viewer/protocol/page_command.h"
+#include "viewer/protocol/session.h"
+#include "viewer/protocol/text_messages.h"
 
 #include <chrono>
 #include <condition_variable>

@@ -1,11 +1,11 @@
-#include "viewer/saving.h"
+#include "viewer/live/saving.h"
 
 #include "base/error.h"
 #include "base/files/file_writer.h"
-#include "viewer/html_export.h"
-#include "viewer/live_run.h"
+#include "viewer/live/live_run.h"
 #include "viewer/page.h"
-#include "viewer/request_check.h"
+#include "viewer/replay/html_export.h"
+#include "viewer/server/request_check.h"
 
 #include <string_view>
 #include <system_error>

@@ -1,4 +1,4 @@
-#include "viewer/shown_simulator.h"
+#include "viewer/live/shown_simulator.h"
 
 #include "output/scene_extent.h"
 #include "simulation/diagnostics.h"
@@ -42,6 +42,7 @@ FrameState state_of(const Simulator& simulator) {
     if (network.activity.is_pinned(i)) state.states[static_cast<std::size_t>(i)] |= kPinned;
   }
   for (const Index i : simulator.contact_particles()) state.states[static_cast<std::size_t>(i)] |= kInContact;
+  if (simulator.settings().record_contact_forces) state.forces = simulator.contact_forces();
   for (const Obstacle& obstacle : simulator.obstacles()) {
     if (!obstacle.changes()) continue;
     const RigidTransform pose = obstacle.motion.pose(obstacle.rest_pose, simulator.time());

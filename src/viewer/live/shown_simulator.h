@@ -2,7 +2,7 @@
 #pragma once
 
 #include "simulation/simulator.h"
-#include "viewer/message.h"
+#include "viewer/protocol/message.h"
 
 namespace sprung {
 

@@ -1,7 +1,8 @@
-#include "viewer/watched_session.h"
+#include "viewer/live/watched_session.h"
 
-#include "viewer/shown_simulator.h"
-#include "viewer/text_messages.h"
+#include "viewer/live/live_texts.h"
+#include "viewer/live/shown_simulator.h"
+#include "viewer/protocol/text_messages.h"
 
 #include <memory>
 #include <utility>

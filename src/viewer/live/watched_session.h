@@ -2,7 +2,7 @@
 #pragma once
 
 #include "simulation/simulator.h"
-#include "viewer/session.h"
+#include "viewer/protocol/session.h"
 
 #include <chrono>
 #include <cstdint>

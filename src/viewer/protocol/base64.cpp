@@ -1,4 +1,4 @@
-#include "viewer/base64.h"
+#include "viewer/protocol/base64.h"
 
 namespace sprung {
 

@@ -1,7 +1,7 @@
 // Bytes as text.
 #pragma once
 
-#include "viewer/message.h"
+#include "viewer/protocol/message.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "viewer/example_scenes.h"
+#include "viewer/protocol/example_scenes.h"
 
 #include <nlohmann/json.hpp>
 

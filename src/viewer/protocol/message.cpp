@@ -1,4 +1,4 @@
-#include "viewer/message.h"
+#include "viewer/protocol/message.h"
 
 #include <bit>
 #include <cstring>
@@ -40,14 +40,17 @@ class Writer {
   Bytes& bytes_;
 };
 
-void write_header(MessageKind kind, const MessageHeader& header, Index particles, Writer& writer) {
+constexpr std::uint32_t kPlaying = 1;
+constexpr std::uint32_t kHasForces = 2;
+
+void write_header(MessageKind kind, const MessageHeader& header, Index particles, std::uint32_t flags, Writer& writer) {
   writer.number(static_cast<std::uint32_t>(kind));
   writer.number(header.run);
   writer.number(header.generation);
   writer.number(header.frame);
   writer.number(header.time);
   writer.count(particles);
-  writer.number(static_cast<std::uint32_t>(header.playing ? 1 : 0));
+  writer.number(flags | (header.playing ? kPlaying : 0U));
 }
 
 }  // namespace
@@ -55,7 +58,7 @@ void write_header(MessageKind kind, const MessageHeader& header, Index particles
 Bytes topology_message(const MessageHeader& header, const Topology& topology) {
   Bytes bytes;
   Writer writer(bytes);
-  write_header(MessageKind::topology, header, topology.particles, writer);
+  write_header(MessageKind::topology, header, topology.particles, 0, writer);
   writer.count(topology.triangles.cols());
   writer.count(topology.segments.cols());
   writer.count(topology.springs.cols());
@@ -80,7 +83,7 @@ Bytes frame_message(const MessageHeader& header, const FrameNumbers& numbers, co
   Bytes bytes;
   bytes.reserve(64 + static_cast<std::size_t>(17 * state.positions.cols()));
   Writer writer(bytes);
-  write_header(MessageKind::frame, header, static_cast<Index>(state.positions.cols()), writer);
+  write_header(MessageKind::frame, header, static_cast<Index>(state.positions.cols()), state.forces ? kHasForces : 0U, writer);
   for (const double value :
        {numbers.kinetic, numbers.elastic, numbers.gravity, numbers.max_stretch, static_cast<double>(numbers.contacts),
         numbers.frame_ms, numbers.realtime, static_cast<double>(numbers.infeasible), numbers.contact_energy, numbers.pull}) {
@@ -96,6 +99,9 @@ Bytes frame_message(const MessageHeader& header, const FrameNumbers& numbers, co
     writer.array<float>(Vector3(pose.translation()));
   }
   for (const Points& vertices : state.deformed) writer.array<float>(vertices);
+  for (std::size_t i = 0; state.forces && i < state.states.size(); ++i) {
+    if ((state.states[i] & kInContact) != 0) writer.array<float>(Vector3(state.forces->col(static_cast<Index>(i))));
+  }
   return bytes;
 }
 

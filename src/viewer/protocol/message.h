@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace sprung {
@@ -61,6 +62,7 @@ struct FrameState {
   std::vector<std::uint8_t> states;     ///< of particles: kInContact, kPinned
   std::vector<RigidTransform> poses{};  ///< of rigid obstacles that move
   std::vector<Points> deformed{};       ///< vertices of deforming obstacles [m]
+  std::optional<Points> forces{};       ///< of contact on all particles [N], if they are known
 };
 
 [[nodiscard]] Bytes topology_message(const MessageHeader& header, const Topology& topology);

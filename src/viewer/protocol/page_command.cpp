@@ -1,4 +1,4 @@
-#include "viewer/page_command.h"
+#include "viewer/protocol/page_command.h"
 
 namespace sprung {
 namespace {

@@ -1,7 +1,7 @@
 // What the server shows: a session publishes runs and answers the pages.
 #pragma once
 
-#include "viewer/message.h"
+#include "viewer/protocol/message.h"
 
 #include <cstdint>
 #include <string>

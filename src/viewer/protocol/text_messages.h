@@ -2,9 +2,10 @@
 #pragma once
 
 #include "base/error.h"
-#include "viewer/example_scenes.h"
-#include "viewer/live_run.h"
+#include "viewer/protocol/example_scenes.h"
+#include "viewer/protocol/message.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,17 +20,11 @@ struct PlayState {
 
 [[nodiscard]] std::string hello_text(const std::string& mode, const std::string& title, const std::vector<ExampleScene>& examples);
 [[nodiscard]] std::string picture_text(const std::string& example, const Bytes& png);
-[[nodiscard]] std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live, const LiveRun& run);
-/// The scene of a simulator that a program steps. Its JSON text is not known.
-[[nodiscard]] std::string watched_text(std::uint32_t generation, const std::string& title, const Simulator& simulator);
 [[nodiscard]] std::string state_text(const PlayState& state);
 /// Without a run there is none to show.
 [[nodiscard]] std::string problems_text(std::optional<std::uint32_t> run, const std::string& key,
                                         const std::vector<Problem>& problems);
-[[nodiscard]] std::string diverged_text(std::uint32_t number, std::uint32_t generation, const LiveRun& run);
 [[nodiscard]] std::string obj_message(const std::string& name, const std::string& text);
-/// See LiveRun::changed_scene().
-[[nodiscard]] std::string changed_text(std::uint32_t number, const LiveRun& run, const std::string& initial_state = "");
 /// Of a spring [N]; `with_limit` says whether the pull of the stretch limit is in it, or there is none.
 [[nodiscard]] std::string tension_text(std::uint32_t run, Index spring, double tension, bool with_limit);
 /// What was saved; without a name, why nothing was.

@@ -1,6 +1,6 @@
-#include "viewer/html_export.h"
+#include "viewer/replay/html_export.h"
 
-#include "viewer/base64.h"
+#include "viewer/protocol/base64.h"
 
 #include <zlib.h>
 #include <nlohmann/json.hpp>

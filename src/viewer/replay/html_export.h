@@ -1,7 +1,7 @@
 // Writes a recorded run as one HTML file, which plays without a server.
 #pragma once
 
-#include "viewer/replay_session.h"
+#include "viewer/replay/replay_session.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
-#include "viewer/replay_session.h"
+#include "viewer/replay/replay_session.h"
 
 #include "base/error.h"
-#include "viewer/page_command.h"
-#include "viewer/text_messages.h"
+#include "viewer/protocol/page_command.h"
+#include "viewer/protocol/text_messages.h"
 
 #include <nlohmann/json.hpp>
 

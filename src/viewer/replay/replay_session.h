@@ -2,7 +2,7 @@
 #pragma once
 
 #include "output/recorded_run.h"
-#include "viewer/session.h"
+#include "viewer/protocol/session.h"
 
 #include <condition_variable>
 #include <deque>

@@ -1,4 +1,4 @@
-#include "viewer/board.h"
+#include "viewer/server/board.h"
 
 #include <utility>
 

@@ -1,7 +1,7 @@
 // What the pages see: the newest scene and frame of each run, and where each page is in it.
 #pragma once
 
-#include "viewer/session.h"
+#include "viewer/protocol/session.h"
 
 #include <cstdint>
 #include <deque>

@@ -1,4 +1,4 @@
-#include "viewer/request_check.h"
+#include "viewer/server/request_check.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,9 +1,9 @@
-#include "viewer/server.h"
+#include "viewer/server/server.h"
 
 #include "base/error.h"
-#include "viewer/board.h"
-#include "viewer/request_check.h"
-#include "viewer/text_messages.h"
+#include "viewer/protocol/text_messages.h"
+#include "viewer/server/board.h"
+#include "viewer/server/request_check.h"
 
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/io_context.hpp>

@@ -1,7 +1,7 @@
 // The viewer's server: HTTP for the page, a WebSocket for each page that watches.
 #pragma once
 
-#include "viewer/session.h"
+#include "viewer/protocol/session.h"
 
 #include <cstdint>
 #include <functional>

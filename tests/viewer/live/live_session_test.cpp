@@ -1,5 +1,5 @@
 // Laws of the live viewer, as a page sees them through the server.
-#include "viewer/live_session.h"
+#include "viewer/live/live_session.h"
 #include "base/error.h"
 #include "base/format.h"
 #include "scene/scene_text.h"

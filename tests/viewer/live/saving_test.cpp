@@ -1,9 +1,9 @@
 // What a live run keeps of its past: saved runs, states as the start of a scene, and going back.
-#include "viewer/saving.h"
+#include "viewer/live/saving.h"
 #include "base/error.h"
 #include "output/recorded_run.h"
 #include "scene/scene_text.h"
-#include "viewer/live_session.h"
+#include "viewer/live/live_session.h"
 #include "viewer/rope_scenes.h"
 #include "viewer/test_client.h"
 

@@ -1,7 +1,7 @@
 // What a page offers beside the scene that it shows.
-#include "viewer/example_scenes.h"
+#include "viewer/protocol/example_scenes.h"
 #include "scene/scene_text.h"
-#include "viewer/base64.h"
+#include "viewer/protocol/base64.h"
 
 #include <gtest/gtest.h>
 

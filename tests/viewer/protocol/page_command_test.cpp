@@ -1,5 +1,5 @@
 // Messages of pages, well-formed and hostile.
-#include "viewer/page_command.h"
+#include "viewer/protocol/page_command.h"
 
 #include <gtest/gtest.h>
 

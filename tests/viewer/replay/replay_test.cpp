@@ -3,7 +3,7 @@
 #include "output/run_output.h"
 #include "scene/load_scene.h"
 #include "scene/scene_text.h"
-#include "viewer/html_export.h"
+#include "viewer/replay/html_export.h"
 #include "viewer/test_client.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // What a page is sent, whenever it comes and however slow it reads.
-#include "viewer/board.h"
+#include "viewer/server/board.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Which requests the viewer's server answers.
-#include "viewer/request_check.h"
+#include "viewer/server/request_check.h"
 
 #include <gtest/gtest.h>
 

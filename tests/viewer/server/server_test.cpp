@@ -1,5 +1,5 @@
 // Laws of the server, whatever it shows.
-#include "viewer/server.h"
+#include "viewer/server/server.h"
 #include "viewer/test_client.h"
 
 #include <gtest/gtest.h>
