@@ -60,12 +60,13 @@ export function publish(shown: Shown, view: SceneView | null): void {
       return shown.models[0]?.bodies ?? {};
     },
     get runs() {
-      return shown.models.map(({ frame, time, bodies, scene, states, diverged, numbers }) => ({
+      return shown.models.map(({ frame, time, bodies, scene, states, contactForces, diverged, numbers }) => ({
         frame,
         time,
         bodies,
         scene,
         states,
+        contactForces,
         diverged: diverged !== null,
         numbers,
       }));

@@ -293,3 +293,33 @@ test('the last seconds of a live run can be looked back at, and the run goes on 
   assert.equal(await page.evaluate(() => window.sprung.frame), past + 3);
   await harness.closePage(page);
 });
+
+test('forces of contact of a body at rest carry its weight, are shown as arrows, and recorded runs do not offer them', async () => {
+  const folder = harness.scratchFolder();
+  const file = join(folder, 'cube.json');
+  writeFileSync(file, JSON.stringify({
+    duration: 3,
+    bodies: { cube: { shape: { type: 'solid', size: [0.3, 0.3, 0.3], resolution: [4, 4, 4] }, material: 'foam', mass: 0.5, place: { position: [0, 0.17, 0] } } },
+    obstacles: { floor: { shape: { type: 'half_space', normal: [0, 1, 0], offset: 0 }, friction: 0.5 } },
+  }));
+  const server = await harness.view(file);
+  const page = await harness.openPage(server.address);
+  await harness.firstFrame(page);
+  await harness.control(page, 'speed').selectOption('0');
+  await harness.play(page);
+  await harness.until(page, () => window.sprung.time > 3);
+  await harness.pause(page);
+  const forces = await page.evaluate(() => Array.from(window.sprung.runs[0].contactForces));
+  const sum = [0, 1, 2].map((d) => forces.filter((_, k) => k % 3 === d).reduce((total, force) => total + force, 0));
+  // A body falls asleep while it still moves a little.
+  assert.ok(Math.abs(sum[1] - 0.5 * 9.81) < 0.05 * 0.5 * 9.81, `${sum}`);
+  await harness.control(page, 'view-forces').check();
+  await page.getByText(/largest force [\d.]+ N/).waitFor();
+  await harness.closePage(page);
+  harness.sprung('run', file, '--out', join(folder, 'run'), '--frames', '2');
+  const replay = await harness.view(join(folder, 'run'));
+  const second = await harness.openPage(replay.address);
+  await harness.firstFrame(second);
+  await harness.control(second, 'view-forces').waitFor({ state: 'hidden' });
+  await harness.closePage(second);
+});

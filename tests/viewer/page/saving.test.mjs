@@ -1,6 +1,6 @@
 // What a page saves through the program.
 import assert from 'node:assert/strict';
-import { copyFileSync, readdirSync } from 'node:fs';
+import { copyFileSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
@@ -67,4 +67,17 @@ test('a copied scene with the present state begins from it', async () => {
   await harness.until(begun, () => window.sprung.frame === 1);
   assert.deepEqual(await harness.positions(begun), last);
   await harness.closePage(begun);
+});
+
+test('two runs side by side are saved both, the second under the name of its integrator too', async () => {
+  const { folder, page } = await openCopy();
+  await harness.control(page, 'compare').selectOption('implicit_euler');
+  await harness.until(page, () => window.sprung.runs.length === 2);
+  await harness.advance(page, 2);
+  await harness.control(page, 'save-run').click();
+  await harness.control(page, 'saved').getByText('rope_1_implicit_euler').waitFor();
+  assert.deepEqual(readdirSync(folder).sort(), ['rope.json', 'rope_1', 'rope_1_implicit_euler']);
+  const { scene } = JSON.parse(readFileSync(join(folder, 'rope_1_implicit_euler', 'run.json'), 'utf8'));
+  assert.equal(scene.integrator.type, 'implicit_euler');
+  await harness.closePage(page);
 });

@@ -1,6 +1,6 @@
 import { control, short } from './dom';
 import type { Pick } from '../picture/picking';
-import { SPRING_KINDS } from '../run/protocol';
+import { IN_CONTACT, SPRING_KINDS } from '../run/protocol';
 import type { Command, SceneMessage, TensionMessage } from '../run/protocol';
 import type { RunModel } from '../run/run_model';
 import type { SceneView } from '../picture/scene_view';
@@ -84,15 +84,18 @@ function nameOf(scene: SceneMessage, particle: number): string {
   return `${body?.name ?? 'particle'} ${particle - (body?.first ?? 0)}`;
 }
 
-/** Position and speed of a particle, stretch and tension of a spring, for people. */
+/** Position, speed and force of contact of a particle, stretch and tension of a spring, for people. */
 function particleText(model: RunModel, particle: number, spring: number | null, tension: TensionMessage | null): string {
-  const { scene, positions, speeds, springs, topology } = model;
+  const { scene, positions, speeds, states, springs, topology, contactForces } = model;
   const at = positions.subarray(3 * particle, 3 * particle + 3);
   const lines = [
     nameOf(scene, particle),
     `position ${[...at].map((value) => value.toFixed(3)).join(', ')} m`,
     `speed ${short(speeds[particle])} m/s`,
   ];
+  if (contactForces && states[particle] & IN_CONTACT) {
+    lines.push(`contact ${short(Math.hypot(...contactForces.subarray(3 * particle, 3 * particle + 3)))} N`);
+  }
   if (spring !== null) {
     const other = springs[2 * spring] === particle ? springs[2 * spring + 1] : springs[2 * spring];
     lines.push(`${SPRING_KINDS[topology.kinds[spring]]} spring to ${nameOf(scene, other)}`, `stretch ${short(100 * stretchOf(model, spring))} %`);

@@ -11,6 +11,7 @@ export interface Theme {
   particle: Color;
   pin: Color;
   contact: Color;
+  force: Color;
   mark: Color;
   drag: Color;
 }
@@ -24,6 +25,7 @@ export const LIGHT: Theme = {
   particle: new Color('#1d2733'),
   pin: new Color('#1b2a41'),
   contact: new Color('#d55e00'),
+  force: new Color('#b5179e'),
   mark: new Color('#d0021b'),
   drag: new Color('#1d2733'),
 };
@@ -37,6 +39,7 @@ export const DARK: Theme = {
   particle: new Color('#e6ebf2'),
   pin: new Color('#f2f5fa'),
   contact: new Color('#ff9142'),
+  force: new Color('#ff85d0'),
   mark: new Color('#ff4d4d'),
   drag: new Color('#e6ebf2'),
 };

@@ -35,7 +35,7 @@ export class ViewPanel {
   }
 
   /** A recorded run has no speeds; one whose scene is gone has no springs and pins either. */
-  offer(switches: Record<'springs' | 'pins' | 'contacts', boolean>, colors: Record<Exclude<ColorMode, 'plain'>, boolean>): void {
+  offer(switches: Record<'springs' | 'pins' | 'contacts' | 'forces', boolean>, colors: Record<Exclude<ColorMode, 'plain'>, boolean>): void {
     for (const box of this.boxes) {
       const offered = switches[box.value as 'springs'] ?? true;
       (box.parentElement as HTMLElement).hidden = !offered;
@@ -52,23 +52,30 @@ export class ViewPanel {
   }
 
   showLegend(theme: Theme): void {
-    const { color } = this.view.options;
+    const { color, forces } = this.view.options;
     const { top } = this.view.scale;
+    const force = forces ? `largest force ${short(this.view.largestForce)} N` : '';
     const limits = color === 'stretch' ? [...new Set(this.view.runs.map((run) => run.stretchLimit))].filter((limit) => limit > 0) : [];
-    const key = `${color} ${top} ${limits.join(' ')} ${this.view.runs.length} ${theme.contact.getHexString()}`;
+    const key = `${color} ${top} ${limits.join(' ')} ${this.view.runs.length} ${force} ${theme.contact.getHexString()}`;
     if (key === this.legendKey) return;
     this.legendKey = key;
-    this.legend.hidden = color === 'plain' || this.view.runs.length === 0;
+    this.legend.hidden = (color === 'plain' && force === '') || this.view.runs.length === 0;
+    this.legend.replaceChildren();
     if (color === 'contact') {
       const swatch = element('i');
       swatch.style.background = `#${theme.contact.getHexString()}`;
-      this.legend.replaceChildren(swatch, 'in contact');
+      this.legend.append(swatch, 'in contact');
     } else if (color !== 'plain') {
       const bar = element('div', { className: 'scale' }, ...limits.map((limit) => limitMark(limit, top)));
       bar.style.background = SCALE_CSS;
       const [title, unit] = color === 'speed' ? ['speed', 'm/s'] : ['stretch of structural springs', ''];
       const end = element('span', { textContent: `${short(top)} ${unit}`.trim() });
-      this.legend.replaceChildren(title, element('span', { textContent: '0' }), bar, end);
+      this.legend.append(title, element('span', { textContent: '0' }), bar, end);
+    }
+    if (force && this.view.runs.length > 0) {
+      const swatch = element('i');
+      swatch.style.background = `#${theme.force.getHexString()}`;
+      this.legend.append(swatch, force);
     }
   }
 

@@ -8,6 +8,7 @@ import {
   Mesh,
 } from 'three';
 import type { MeshStandardMaterial } from 'three';
+import { ArrowView } from './arrow_view';
 import { ParticleColors } from './colors';
 import { Dots } from './dots';
 import { MassView } from './mass_view';
@@ -17,9 +18,12 @@ import { IN_CONTACT, PINNED } from '../run/protocol';
 import { RopeView } from './rope_view';
 import type { RunModel } from '../run/run_model';
 import type { Theme } from '../panel/theme';
-import { VelocityView } from './velocity_view';
 import type { ViewOptions } from './view_options';
 
+/** The arrow of a velocity is as long as the way of its particle in this time [s]. */
+const SHOWN_TIME = 0.1;
+/** How long the arrow of the largest force on the scale is, by the extent of the bodies. */
+const LONGEST_FORCE = 0.2;
 const MANY_PINS = 20;
 /** More masses would hide each other. */
 const MOST_BALLS = 30;
@@ -45,12 +49,14 @@ export class BodyView {
   private readonly mark: Dots;
   private readonly hovered: Dots;
   private readonly balls: MassView | null;
-  private readonly velocities: VelocityView;
+  private readonly velocities: ArrowView;
+  private readonly forces: ArrowView;
+  private readonly moved: Float32Array;
 
   /** `size` is the extent of the bodies [m]. */
   constructor(
     private readonly model: RunModel,
-    size: number,
+    private readonly size: number,
   ) {
     const { topology } = model;
     this.positions = new BufferAttribute(model.positions, 3).setUsage(DynamicDrawUsage);
@@ -72,25 +78,27 @@ export class BodyView {
     const { masses } = model.scene;
     const few = masses && masses.length > 0 && masses.length <= MOST_BALLS && topology.triangles.length === 0;
     this.balls = few ? new MassView(masses, Math.max(0.035 * size, 2 * this.tubeRadius)) : null;
-    this.velocities = new VelocityView(model);
+    this.velocities = new ArrowView(topology.particles);
+    this.forces = new ArrowView(topology.particles);
+    this.moved = new Float32Array(model.positions.length);
     this.pins = new Dots(this.positions, pinSize(model));
     this.contacts = new Dots(this.positions, 6);
     this.mark = new Dots(this.positions, 15, 2);
     this.hovered = new Dots(this.positions, 11, 2);
     const dots = [this.particles, this.pins, this.contacts, this.mark, this.hovered].map(({ points }) => points);
-    this.group.add(this.surface, this.springs, this.velocities.lines, ...dots);
+    this.group.add(this.surface, this.springs, this.velocities.lines, this.forces.lines, ...dots);
     if (this.balls) this.group.add(this.balls.mesh);
     if (this.rope) this.group.add(this.rope.group);
     this.surface.frustumCulled = this.springs.frustumCulled = false;
   }
 
-  /** `top` is the value at the end of the scale of colours. */
-  update(options: ViewOptions, theme: Theme, top: number): void {
+  /** `top` is the value at the end of the scale of colours, `force` the largest force that is shown [N]. */
+  update(options: ViewOptions, theme: Theme, top: number, force: number): void {
     const { model } = this;
     this.surface.visible = options.surface && model.topology.triangles.length > 0;
     this.springs.visible = options.springs && model.scene.complete;
     this.particles.points.visible = options.particles && !this.balls;
-    this.velocities.update(options.velocities, theme);
+    this.showArrows(options, theme, force);
     if (this.balls) {
       this.balls.mesh.visible = options.particles;
       this.balls.place(model.positions);
@@ -120,6 +128,19 @@ export class BodyView {
     this.markDivergence(theme);
     this.chosenSpring?.view.mark(theme.contact);
     this.chosenSpring?.view.place(model.positions);
+  }
+
+  private showArrows(options: ViewOptions, theme: Theme, force: number): void {
+    const { positions, previous, elapsed, contactForces } = this.model;
+    this.velocities.hide();
+    this.forces.hide();
+    if (options.velocities && elapsed > 0) {
+      for (let k = 0; k < positions.length; ++k) this.moved[k] = positions[k] - previous[k];
+      this.velocities.show(positions, this.moved, SHOWN_TIME / elapsed, theme.contact);
+    }
+    if (options.forces && contactForces && force > 0) {
+      this.forces.show(positions, contactForces, (LONGEST_FORCE * this.size) / force, theme.force);
+    }
   }
 
   /** Marks a spring, or none. Returns whether that is another one. */
@@ -156,6 +177,7 @@ export class BodyView {
     this.rope?.dispose();
     this.balls?.dispose();
     this.velocities.dispose();
+    this.forces.dispose();
     this.markedSprings?.dispose();
     this.chosenSpring?.view.dispose();
     for (const dots of [this.particles, this.pins, this.contacts, this.mark, this.hovered]) dots.dispose();

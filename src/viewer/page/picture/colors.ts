@@ -31,17 +31,23 @@ function niceAbove(value: number): number {
   return 10 * power;
 }
 
-/** The scale of the colours, which all runs share. It follows the values up and down, in steps that do not flicker. */
-export class ColorScale {
+/** A scale that all runs share. It follows the values up and down, in steps that do not flicker. */
+export class Scale {
   /** The value at the end of the scale. */
   top = 0;
+
+  follow(largest: number): void {
+    if (largest > this.top || niceAbove(1.25 * largest) < this.top) this.top = niceAbove(largest);
+  }
+}
+
+export class ColorScale extends Scale {
   private mode: ColorMode = 'plain';
 
-  follow(mode: ColorMode, value: number): void {
+  followMode(mode: ColorMode, value: number): void {
     if (mode !== this.mode) this.top = 0;
     this.mode = mode;
-    const largest = Math.max(value, SMALLEST_SCALE[mode]);
-    if (largest > this.top || niceAbove(1.25 * largest) < this.top) this.top = niceAbove(largest);
+    this.follow(Math.max(value, SMALLEST_SCALE[mode]));
   }
 }
 

@@ -76,9 +76,17 @@ export class RunView {
     return Math.max(this.bodies.particleColors.measure(color), color === 'stretch' ? this.stretchLimit : 0);
   }
 
-  /** After `measure`; `top` is the value at the end of the scale of colours. */
-  update(options: ViewOptions, theme: Theme, top: number): void {
-    this.bodies.update(options, theme, top);
+  /** The largest force of contact [N]. */
+  get largestForce(): number {
+    const forces = this.model.contactForces;
+    let largest = 0;
+    if (forces) for (let k = 0; k < forces.length; k += 3) largest = Math.max(largest, forces[k] ** 2 + forces[k + 1] ** 2 + forces[k + 2] ** 2);
+    return Math.sqrt(largest);
+  }
+
+  /** After `measure`; see BodyView. */
+  update(options: ViewOptions, theme: Theme, top: number, force: number): void {
+    this.bodies.update(options, theme, top, force);
     let pose = 0;
     let deformed = 0;
     for (const obstacle of this.obstacles) {

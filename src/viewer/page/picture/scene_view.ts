@@ -1,7 +1,8 @@
 import { Box3, NeutralToneMapping, PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { AxisCross } from './axis_cross';
-import { ColorScale } from './colors';
+import { ColorScale, Scale } from './colors';
+import { Occlusion } from './occlusion';
 import type { RunModel } from '../run/run_model';
 import { RunView } from './run_view';
 import { LIGHT } from '../panel/theme';
@@ -39,6 +40,9 @@ export class SceneView {
   readonly controls: OrbitControls;
   readonly runs: RunView[] = [];
   readonly scale = new ColorScale();
+  /** The largest force that is shown [N]. */
+  largestForce = 0;
+  private readonly forceScale = new Scale();
   private readonly renderer: WebGLRenderer;
   private theme: Theme = LIGHT;
   private radius = 1;
@@ -52,13 +56,14 @@ export class SceneView {
   private readonly fitted = new Box3();
   private firstRadius = 1;
   private readonly axes = new AxisCross();
+  private readonly occlusion = new Occlusion();
 
   /** Throws where there is no WebGL. */
   constructor(private readonly parent: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
-    this.options.shadows = !drawsWithoutGpu(this.renderer);
+    this.options.shadows = this.options.occlusion = !drawsWithoutGpu(this.renderer);
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.autoUpdate = false;
     this.renderer.toneMapping = NeutralToneMapping;
@@ -191,15 +196,18 @@ export class SceneView {
       this.renderer.setScissor(rect.x, bottom, rect.width, rect.height);
       this.renderer.shadowMap.needsUpdate = shadows;
       this.renderer.render(run.scene, this.camera);
+      if (this.options.occlusion) this.occlusion.draw(this.renderer, run.scene, this.camera, rect, this.radius);
     });
     this.axes.show(this.camera.matrixWorldInverse);
     return true;
   }
 
   private update(): void {
-    const { color } = this.options;
-    this.scale.follow(color, Math.max(0, ...this.runs.map((run) => run.measure(color))));
-    for (const run of this.runs) run.update(this.options, this.theme, this.scale.top);
+    const { color, forces } = this.options;
+    this.scale.followMode(color, Math.max(0, ...this.runs.map((run) => run.measure(color))));
+    this.largestForce = forces ? Math.max(0, ...this.runs.map((run) => run.largestForce)) : 0;
+    if (this.largestForce > 0) this.forceScale.follow(this.largestForce);
+    for (const run of this.runs) run.update(this.options, this.theme, this.scale.top, this.forceScale.top);
     if (!this.runs[0]) return;
     this.follow(this.runs[0].center);
     this.grow(this.runs[0]);

@@ -98,6 +98,8 @@ export interface Header {
   time: number;
   particles: number;
   playing: boolean;
+  /** Whether a frame has forces of contact. */
+  forces: boolean;
 }
 
 export interface Mesh { vertices: Float32Array; triangles: Uint32Array }
@@ -135,6 +137,8 @@ export interface Frame {
   poses: Float32Array[];
   /** Vertices of the deforming obstacles, in their order. */
   deformed: Float32Array[];
+  /** On the particles in contact [N], three numbers each. */
+  contactForces: Float32Array | null;
 }
 
 export const TOPOLOGY = 1;
@@ -156,6 +160,7 @@ export function decodeHeader(buffer: ArrayBuffer): Header {
     time: view.getFloat64(16, true),
     particles: view.getUint32(24, true),
     playing: (view.getUint32(28, true) & 1) !== 0,
+    forces: (view.getUint32(28, true) & 2) !== 0,
   };
 }
 
@@ -218,6 +223,9 @@ export function decodeFrame(buffer: ArrayBuffer, header: Header, scene: SceneMes
   scene.obstacles.forEach((obstacle, k) => {
     if (obstacle.motion === 'deforming') deformed.push(reader.f32(topology.obstacles[k].vertices.length));
   });
+  let touching = 0;
+  if (header.forces) for (const state of states) if (state & IN_CONTACT) ++touching;
+  const contactForces = header.forces ? reader.f32(3 * touching) : null;
   return {
     numbers: { kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy, pull },
     positions,
@@ -225,5 +233,6 @@ export function decodeFrame(buffer: ArrayBuffer, header: Header, scene: SceneMes
     states,
     poses,
     deformed,
+    contactForces,
   };
 }

@@ -1,4 +1,5 @@
 import { History } from './history';
+import { IN_CONTACT } from './protocol';
 import type { DivergedMessage, Frame, FrameNumbers, Header, SceneMessage, Topology } from './protocol';
 
 export interface BodyState { positions: Float32Array }
@@ -20,6 +21,8 @@ export class RunModel {
   readonly bodies: Record<string, BodyState> = {};
   poses: Float32Array[] = [];
   deformed: Float32Array[] = [];
+  /** The mean force of contact on each particle in the frame [N]; null in recorded runs. */
+  contactForces: Float32Array | null = null;
   numbers: FrameNumbers | null = null;
   frame = 0;
   time = 0;
@@ -52,10 +55,25 @@ export class RunModel {
     this.states.set(frame.states);
     this.poses = frame.poses;
     this.deformed = frame.deformed;
+    this.setContactForces(frame.contactForces);
     this.numbers = frame.numbers;
     this.frame = header.frame;
     this.time = header.time;
     this.remove();
+  }
+
+  /** A frame has those of the particles in contact alone. */
+  private setContactForces(forces: Float32Array | null): void {
+    if (!forces) {
+      this.contactForces = null;
+      return;
+    }
+    this.contactForces ??= new Float32Array(this.positions.length);
+    this.contactForces.fill(0);
+    for (let i = 0, at = 0; i < this.states.length; ++i) {
+      if (!(this.states[i] & IN_CONTACT)) continue;
+      for (let d = 0; d < 3; ++d) this.contactForces[3 * i + d] = forces[at++];
+    }
   }
 
   /** Removes what tore or broke until the frame. */
