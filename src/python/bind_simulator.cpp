@@ -269,14 +269,15 @@ free to move.)")
       .def("forces", &forces, R"(forces(self)
 --
 
-The mean forces [N] of pins on their bodies and of attachments on their first ends, since the begin of the frame or the last
-reset_forces(): a structured array with the fields name (text) and force (3,). Forces on obstacles are not recorded. Raises
+The mean forces [N] of pins on their bodies and of attachments on their first ends, since the last begin of frame() or
+reset_forces(), or since time 0: a structured array with the fields name (text) and force (3,). Forces on obstacles are not recorded. Raises
 InputError unless the scene has "output": {"forces": true}, or the simulator was made with record_forces=True.)")
       .def("contact_forces", &contact_forces, R"(contact_forces(self)
 --
 
-The mean force of contact on each particle [N], (n, 3), in the same interval: of obstacles and other bodies, with friction. Raises
-InputError as forces().)")
+The mean force [N] with which obstacles and bodies push each particle, with friction, since the last begin of frame() or
+reset_forces(), or since time 0: a new array (n, 3), whose rows of a body are those of Body.slice. Raises InputError unless the
+scene has "output": {"forces": true}, or the simulator was made with record_forces=True.)")
       .def(
           "reset_forces", [](ScriptedSimulator& self) { self.change([](Simulator& changed) { changed.reset_forces(); }); },
           "reset_forces(self)\n--\n\nBegin a new interval for forces() and contact_forces(). frame() does so too.")

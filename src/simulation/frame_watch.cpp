@@ -22,6 +22,9 @@ constexpr double kManyFrames = 0.1;
 // in a few steps; from then on truncation stops them at their surfaces.
 constexpr double kFallsWithinGap = 16.0;
 
+// A step that has to be smaller by more than this factor is no remedy that anyone can wait for.
+constexpr double kMostTimesSmaller = 256.0;
+
 /// The smallest gap [m] between any body and obstacle, two bodies, or two sheets of a body; infinite if nothing can collide.
 double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>& obstacles) {
   double gap = std::numeric_limits<double>::infinity();
@@ -66,8 +69,10 @@ std::string remedy_for_stretch(const Simulator& simulator, const FrameMemory::Mi
   const bool can_be_solved = is_gauss_seidel && limit.max_compression == 1.0;
   const double times = std::max(2.0, std::ceil(missed.largest / wanted_excess(limit)));
   if (can_be_solved || simulator.stretch_solver() != "newton") {
+    // What passes leave falls at least in proportion to the step. A step that is typed has no inner substeps.
     const SimulatorSettings& settings = simulator.settings();
-    const auto step = step_to_type(settings.frame_rate, settings.longest_substep() / times);
+    const auto step =
+        times <= kMostTimesSmaller ? step_to_type(settings.frame_rate, settings.longest_substep() / times) : std::nullopt;
     const std::string smaller = step ? "use a \"step\" of " + format_number(*step) + " s" : "use a smaller \"step\"";
     return std::string("Raise \"iterations\" of \"stretch_limit\", ") +
            (can_be_solved ? smaller + " or, for ropes and cloths, \"solver\": \"auto\"." : "or " + smaller + ".");

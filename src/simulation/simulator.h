@@ -239,12 +239,14 @@ class Simulator {
   /// without the setting.
   [[nodiscard]] Scalars limit_tensions() const;
 
-  /// The mean force of contact on each particle since then, with friction [N], 3 x n: of obstacles and of other elements, pinned
-  /// particles among them. Needs SimulatorSettings::record_contact_forces instead; zero without it. Truncation stops particles
-  /// that contact did not, by impulses that are not recorded. Grows with the number of particles.
+  // With SimulatorSettings::record_contact_forces. The cost grows with the number of particles.
+
+  /// The mean force of contact on each particle since reset_forces() or time 0 [N], 3 x n: normal force and friction of obstacles
+  /// and bodies. Zero without the setting. Inexact in steps in which truncation acts, in impacts with a penalty, whose force at the
+  /// end of substeps counts, and on pinned particles in implicit Euler's response to contact between bodies.
   [[nodiscard]] Points contact_forces() const;
 
-  /// Begins a new interval for all three.
+  /// Begins a new interval for reactions(), limit_tensions() and contact_forces().
   void reset_forces();
 
  private:

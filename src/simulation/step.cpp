@@ -257,7 +257,7 @@ StepReport Stepper::make_substep(int inner) {
   return report;
 }
 
-/// The forces at the end of the substep stand for those within.
+/// Adds dt times the penalty force at the end of the substep.
 void Stepper::record_penalty() {
   if (!state_.impulses.has_contact()) return;
   Points forces = Points::Zero(3, network().particle_count());

@@ -96,6 +96,7 @@ class Stepper {
   void record_gain(Index particle, const Vector3& velocity_before);
   void update_attachments();
   void record_attachments();
+  void record_penalty();
   void note_contacts();
   void correct_positions(double dt);
   [[nodiscard]] Energies energies() const;
@@ -126,7 +127,6 @@ class Stepper {
   void wake_with_bodies(const std::vector<char>& asleep);
   [[nodiscard]] bool disturbs_sleep(const std::vector<GroupPair>& pairs);
   [[nodiscard]] bool all_sleep() const;
-  void record_penalty();
   void add_impulses_of_sleepers(const RecordedImpulses& before);
 
   [[nodiscard]] const SpringNetwork& network() const { return scratch_.network; }

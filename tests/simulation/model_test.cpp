@@ -217,7 +217,7 @@ TEST(AddedForce, KeepsOnlyWhatItTouchesAwake) {
 }
 
 TEST(State, AnyNumberThatDiffersMakesStatesDiffer) {
-  Simulator simulator(torn_and_resting(), {.step = 1e-3, .record_forces = true}, {ground()});
+  Simulator simulator(torn_and_resting(), {.step = 1e-3, .record_forces = true, .record_contact_forces = true}, {ground()});
   run(simulator, 0.5);
   const SimulationState state = simulator.state();
   EXPECT_EQ(hash(state), hash(SimulationState(state)));
@@ -240,6 +240,7 @@ TEST(State, AnyNumberThatDiffersMakesStatesDiffer) {
   EXPECT_TRUE(differs([](SimulationState& s) { s.planner.retry_wait = 3; }));
   EXPECT_TRUE(differs([](SimulationState& s) { s.limit.handovers[1].missed_steps = 2; }));
   EXPECT_TRUE(differs([](SimulationState& s) { s.impulses.on_pinned(0, 0) += 1.0; }));
+  EXPECT_TRUE(differs([](SimulationState& s) { s.impulses.of_contact(0, 0) += 1.0; }));
   EXPECT_TRUE(differs([](SimulationState& s) { s.reactions.since += 1.0; }));
   EXPECT_TRUE(differs([](SimulationState& s) { s.steering.obstacles.push_back({0, {{0.0, RigidTransform::Identity()}}}); }));
   EXPECT_FALSE(differs([](SimulationState&) {}));

@@ -49,7 +49,7 @@ class Resume : public ::testing::Test {
     return resumed;
   }
 
-  SimulatorSettings settings_{.step = 2e-3, .record_forces = true};
+  SimulatorSettings settings_{.step = 2e-3, .record_forces = true, .record_contact_forces = true};
   SpringNetwork network_;
   std::vector<Obstacle> obstacles_{ground(), deforming_sheet(0.9 * Matrix3::Identity())};
   std::unique_ptr<Simulator> simulator_;
@@ -123,6 +123,9 @@ TEST_F(Resume, RefusesAStateThatDoesNotFit) {
       {"state.links[0]", [](SimulationState& state) { state.links.at(0).attachment = 1; }},
       {"state.links[0]", [](SimulationState& state) { state.links.at(0).second[0] = 2; }},
       {"state.impulses.on_pinned = 1 entries", [](SimulationState& state) { state.impulses.on_pinned.setZero(3, 1); }},
+      {"state.impulses.of_contact = 1 entries", [](SimulationState& state) { state.impulses.of_contact.setZero(3, 1); }},
+      {"state.impulses.of_contact", [](SimulationState& state) { state.impulses.of_contact(0, 0) = kNotANumber; }},
+      {"state.last_impulses: must be there if", [](SimulationState& state) { state.last_impulses.of_contact = Points(3, 0); }},
       {"state.last_impulses: must be there if", [](SimulationState& state) { state.last_impulses = {}; }},
       {"state.last_impulses: must be there if", [](SimulationState& state) { state.impulses = {}; }},
       {"state.impulses.of_springs: must be finite", [](SimulationState& state) { state.impulses.of_springs[0] = kNotANumber; }},
@@ -181,6 +184,11 @@ TEST_F(Resume, RecordsAsItsSettingsSay) {
   Simulator recording = resume(without);
   recording.step();
   EXPECT_EQ(recording.reactions().size(), 2U);
+  settings_.record_contact_forces = false;
+  Simulator blind = resume(recording.state());
+  blind.step();
+  EXPECT_TRUE(blind.contact_forces().isZero(0.0));
+  EXPECT_EQ(blind.reactions().size(), 2U);
 }
 
 // A pin pulls a rod through a plate that holds back the rod's other end. The crossing is permitted from then on; a run that forgot

@@ -43,6 +43,7 @@ void expect_equal(const SimulationState& a, const SimulationState& b) {
   EXPECT_EQ(a.substep, b.substep);
   EXPECT_EQ(a.grips.size(), b.grips.size());
   EXPECT_EQ(a.impulses.on_pinned, b.impulses.on_pinned);
+  EXPECT_EQ(a.impulses.of_contact, b.impulses.of_contact);
 }
 
 TEST(Simulator, AFreeParticleFallsByTheSumOfItsScheme) {

@@ -87,7 +87,7 @@ class ContactProjection {
     solver_.constrain_pushed(motion, constrained);
   }
   void record(const StepMotion& motion, const ImpulseRecorder& recorder) const { solver_.record(motion, recorder); }
-  void add_pushes(const StepMotion& motion, double factor, Points& impulses) const { solver_.add_pushes(motion, factor, impulses); }
+  void add_pushes(const StepMotion& motion, Points& impulses) const { solver_.add_pushes(motion, impulses); }
   void add_settled(Points& impulses) const { solver_.add_settled(impulses); }
   [[nodiscard]] std::vector<Index> pushed() const { return solver_.pushed(); }
   [[nodiscard]] std::vector<ContactNormal> normals() const { return solver_.normals(); }

@@ -269,8 +269,8 @@ void ContactSolver::record(const StepMotion& motion, const ImpulseRecorder& reco
   });
 }
 
-void ContactSolver::add_pushes(const StepMotion& motion, double factor, Points& impulses) const {
-  const auto add = [&](Index particle, const Vector3& momentum) { impulses.col(particle) += factor / motion.dt * momentum; };
+void ContactSolver::add_pushes(const StepMotion& motion, Points& impulses) const {
+  const auto add = [&](Index particle, const Vector3& momentum) { impulses.col(particle) += momentum / motion.dt; };
   for_each_set(sets_, [&](const auto& set) {
     set.for_pushing([&](const auto& row, const ContactGoal& goal) { for_shares(row, displacement_by(row, goal), add); });
   });

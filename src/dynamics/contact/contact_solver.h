@@ -64,9 +64,9 @@ class ContactSolver {
   /// responds to contact they are those of the passes, not of its response. Requires settle_velocities().
   void record(const StepMotion& motion, const ImpulseRecorder& recorder) const;
 
-  /// Adds to each particle `factor` times the impulses [N s], 3 x n, that contacts gave it by the passes over positions so far.
-  void add_pushes(const StepMotion& motion, double factor, Points& impulses) const;
-  /// The same for the velocities. Requires settle_velocities().
+  /// Adds to `impulses` [N s], 3 x n, what contacts gave each particle by the passes over positions so far.
+  void add_pushes(const StepMotion& motion, Points& impulses) const;
+  /// The same by the passes over velocities. Requires settle_velocities().
   void add_settled(Points& impulses) const;
 
   /// Particles pushed in this step, ascending.
@@ -76,8 +76,8 @@ class ContactSolver {
   [[nodiscard]] std::vector<ContactNormal> normals() const;
 
  private:
-  /// Calls `visit(particle, share)` for the particles of a row: `share` is that of the particle in `moved`, the change of the
-  /// row's sum by the contact, times its mass.
+  /// Calls `visit(particle, m u)` for each particle of a row: u is the particle's part of `moved`, the change of the row's weighted
+  /// sum; m is its mass.
   template <std::size_t n, class Visit>
   void for_shares(const ContactConstraint<n>& row, const Vector3& moved, const Visit& visit) const;
   /// Adds contacts of n particles from index `begin` on; those before it stay.

@@ -96,12 +96,13 @@ class ImplicitEuler final : public Integrator {
     return update_element_friction(motion, constrained.element_contacts(), state) || changed;
   }
 
-  // By the balance of momentum, M (v - v(t)) - dt F.
-  void record_contact(const StepMotion& motion, SimulationState& state) const override {
+  // Contact gives what the balance of momentum lacks, M (v - v(t)) - dt F.
+  void record_contact(const StepMotion& motion, const Points& pushes, SimulationState& state) const override {
     for_free_particles(network(), [&](Index i) {
-      if (pushed_.col(i).isZero(0.0)) return;
+      if (pushed_.col(i).isZero(0.0) && pushes.col(i).isZero(0.0)) return;
       const Vector3 velocity = (state.x.col(i) - motion.before.col(i)) / motion.dt;
-      state.impulses.of_contact.col(i) += network().masses[i] * (velocity - motion.v_before.col(i)) - constant_.col(i);
+      const Vector3 impulse = network().masses[i] * (velocity - motion.v_before.col(i)) - constant_.col(i);
+      state.impulses.of_contact.col(i) += impulse - pushes.col(i);
     });
   }
 

@@ -77,9 +77,11 @@ void ImplicitFriction::set_impulse(const Matrix3& normals, const Vector3& impuls
   impulse_ = impulse;
   stiffness_.setZero();
   const double length = slip.norm();
-  if (length == 0.0) return;
+  const Matrix3 across = Matrix3::Identity() - normals;
+  // Supports that leave no direction leave a slip of rounding errors, along which the stiffness would be negative.
+  if (!((across * slip).norm() > 0.5 * length)) return;
   const Vector3 along = slip / length;
-  stiffness_ = impulse.norm() / length * (Matrix3::Identity() - normals - along * along.transpose());
+  stiffness_ = impulse.norm() / length * (across - along * along.transpose());
 }
 
 }  // namespace sprung

@@ -36,7 +36,7 @@ bool Integrator::respond_to_contact(const StepMotion&, const Forces&, const Poin
   return false;
 }
 
-void Integrator::record_contact(const StepMotion&, SimulationState&) const {}
+void Integrator::record_contact(const StepMotion&, const Points&, SimulationState&) const {}
 
 void Integrator::recover_velocities(SimulationState& state, const Forces&, const Points&, const Points& advanced, double dt) {
   for_free_particles(network_, [&](Index i) { state.v.col(i) += (state.x.col(i) - advanced.col(i)) / dt; });

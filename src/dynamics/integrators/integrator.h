@@ -50,8 +50,9 @@ class Integrator {
   virtual bool respond_to_contact(const StepMotion& motion, const Forces& forces, const Points& from,
                                   const ConstrainedDirections& constrained, SimulationState& state);
 
-  /// Adds the impulses of contact in the step, after the last response, to those of the state. Default: does nothing.
-  virtual void record_contact(const StepMotion& motion, SimulationState& state) const;
+  /// Adds to state.impulses.of_contact the impulse [N s] of each free particle by which the responses to contact exceed the
+  /// `pushes` of passes so far, 3 x n. Requires a state that records contact. Default: does nothing.
+  virtual void record_contact(const StepMotion& motion, const Points& pushes, SimulationState& state) const;
 
   /// Computes the velocities after constraints moved the particles from `advanced` (the result of `advance`) to state.x; `before`
   /// are the positions at t. Default: v += (x - advanced) / dt. A scheme whose velocities depend on the forces at the end of the

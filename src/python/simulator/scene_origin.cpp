@@ -24,7 +24,9 @@ void replace(std::string& text, std::string_view option, std::string_view argume
 
 LoadedScene load_in_python(const SceneSource& source) try {
   const WithoutLock without_lock;
-  return load_scene(source);
+  PreparedScene prepared = prepare_scene(source);
+  prepared.built.settings.record_contact_forces = prepared.built.settings.record_forces;
+  return start_scene(std::move(prepared));
 } catch (const InputError& error) {
   std::vector<Problem> problems = error.problems();
   for (Problem& problem : problems) {

@@ -15,7 +15,8 @@ struct SceneOrigin {
   std::shared_ptr<const Model> model;  ///< as it was built
 };
 
-/// Loads a scene without the interpreter's lock. Throws as load_scene(), in words of Python: `mesh_paths` for `--mesh-path`.
+/// Loads a scene without the interpreter's lock; one that records forces records those of contact too. Throws as load_scene(), in
+/// words of Python: `mesh_paths` for `--mesh-path`.
 [[nodiscard]] LoadedScene load_in_python(const SceneSource& source);
 
 /// `source` has its text. Call it where the scene was loaded: relative paths are completed by the working directory.

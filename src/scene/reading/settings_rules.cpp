@@ -151,7 +151,7 @@ void read_settings(Fields& fields, Scene& scene) {
   settings.seed = static_cast<std::uint64_t>(fields.value("seed", integer(0, std::numeric_limits<Index>::max()), 0).value_or(0));
   scene.strength_scatter = fields.value("strength_scatter", number(kFraction), scene.strength_scatter).value_or(0.0);
   const auto output = fields.value("output", object_of<OutputKeys>(read_output), Json::object()).value_or(OutputKeys{});
-  settings.record_forces = settings.record_contact_forces = output.forces;
+  settings.record_forces = output.forces;
   scene.write_record = output.record;
 }
 

@@ -209,9 +209,9 @@ void StepConstraints::respond_to_contact(SimulationState& state, const Forces& f
     responded_ = state.x;
   }
   if (!state.impulses.has_contact()) return;
-  // The response balances all that pushes against contact. The pushes so far are part of it.
-  integrator_.record_contact(motion(), state);
-  contacts_.add_pushes(motion(), -1.0, state.impulses.of_contact);
+  Points pushes = Points::Zero(3, state.x.cols());
+  contacts_.add_pushes(motion(), pushes);
+  integrator_.record_contact(motion(), pushes, state);
 }
 
 void StepConstraints::end_substep(const ObstacleFrame& frame, SimulationState& state, const Forces& forces, StepReport& report) {
@@ -224,7 +224,7 @@ void StepConstraints::end_substep(const ObstacleFrame& frame, SimulationState& s
   contacts_.settle_velocities(motion(), state, integrator_);
   if (recorder_.on() && projects_contacts()) contacts_.record(motion(), recorder_);
   if (state.impulses.has_contact() && projects_contacts()) {
-    contacts_.add_pushes(motion(), 1.0, state.impulses.of_contact);
+    contacts_.add_pushes(motion(), state.impulses.of_contact);
     contacts_.add_settled(state.impulses.of_contact);
   }
   contacts_.note_slip(motion(), state);

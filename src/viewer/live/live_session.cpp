@@ -7,6 +7,7 @@
 #include "scene/reading/scene_reader.h"
 #include "simulation/tension.h"
 #include "viewer/live/saving.h"
+#include "viewer/live/shown_simulator.h"
 
 #include <nlohmann/json.hpp>
 
@@ -413,20 +414,29 @@ void LiveSession::tell_scene(ClientId client, const PageCommand& command) {
 }
 
 void LiveSession::save(ClientId client, const PageCommand& command) {
-  const LiveRun& run = run_of(command).run;
   const std::string name = command.text("name");
   const std::string as = command.text("as");
   if (as != "run" && as != "page") throw PageCommandError("a run is saved as run or page, not as " + as);
   attempt_to_save(client, [&] {
-    const std::filesystem::path path = new_path(save_folder(), name, as == "page" ? ".html" : "");
-    std::string frames = counted(run.saved_frames(), "frame");
-    if (run.saved_frames() < run.frame()) frames.insert(0, "Only the first ").append(", as memory ended there,");
-    if (as == "page") {
-      save_page(run, path);
-      return saved_text(name, frames + " are in " + path.string() + ". It plays in any browser.");
+    // All names are checked before anything is written.
+    std::vector<std::filesystem::path> paths;
+    for (const auto& shown : runs_) {
+      const std::string own = shown->number == 0 ? name : name + "_" + integrator_name(shown->run.simulator());
+      paths.push_back(new_path(save_folder(), own, as == "page" ? ".html" : ""));
     }
-    run.save(path);
-    return saved_text(name, frames + " are in " + path.string() + ". sprung view and sprung export read this folder.");
+    std::string text;
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      const LiveRun& run = runs_[k]->run;
+      if (as == "page") {
+        save_page(run, paths[k]);
+      } else {
+        run.save(paths[k]);
+      }
+      if (run.saved_frames() < run.frame()) text += "Only the first, as memory ended there: ";
+      text += counted(run.saved_frames(), "frame") + ": " + paths[k].string() + ". ";
+    }
+    text += as == "page" ? "A page plays in any browser." : "sprung view and sprung export read such folders.";
+    return saved_text(name, text);
   });
 }
 

@@ -1,15 +1,14 @@
 #include "viewer/live/live_texts.h"
 
 #include "output/run_recorder.h"
+#include "viewer/live/shown_simulator.h"
 
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <variant>
 
 namespace sprung {
 namespace {
@@ -65,13 +64,12 @@ void add_location(const StepFailure& failure, const SpringNetwork& network, Json
 std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live, const LiveRun& run) {
   const LoadedScene& loaded = run.loaded();
   const Json scene = Json::parse(loaded.scene.resolved);
-  const Json integrator = scene.value("integrator", Json::object());
   return text_of({{"type", "scene"},
                   {"run", number},
                   {"generation", generation},
                   {"title", std::filesystem::path(run.source().file).filename().string()},
                   {"lesson", lesson_of(run.source().file)},
-                  {"integrator", integrator.value("type", "verlet")},
+                  {"integrator", integrator_name(loaded.simulator)},
                   {"step", loaded.simulator.settings().step},
                   {"steps_per_frame", loaded.simulator.settings().steps_per_frame},
                   {"frame_rate", loaded.scene.frame_rate},
@@ -84,19 +82,18 @@ std::string scene_text(std::uint32_t number, std::uint32_t generation, bool live
                   {"warnings", loaded.warnings},
                   {"masses", masses_of(loaded.simulator.network())},
                   {"bodies", bodies_of(loaded.simulator.network())},
-                  {"obstacles", obstacles_of(loaded.simulator)}});
+                  {"obstacles", obstacles_of(loaded.simulator)},
+                  {"forces", loaded.simulator.settings().record_contact_forces}});
 }
 
 std::string watched_text(std::uint32_t generation, const std::string& title, const Simulator& simulator) {
-  constexpr std::array<const char*, std::variant_size_v<IntegratorSettings>> kIntegrators{
-      "explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "runge_kutta_4", "implicit_euler"};
   const SimulatorSettings& settings = simulator.settings();
   return text_of({{"type", "scene"},
                   {"run", 0},
                   {"generation", generation},
                   {"title", title},
                   {"lesson", ""},
-                  {"integrator", kIntegrators[settings.integrator.index()]},
+                  {"integrator", integrator_name(simulator)},
                   {"step", settings.step},
                   {"steps_per_frame", settings.steps_per_frame},
                   {"frame_rate", 1.0 / (settings.step * settings.steps_per_frame)},
@@ -109,7 +106,8 @@ std::string watched_text(std::uint32_t generation, const std::string& title, con
                   {"warnings", simulator.warnings()},
                   {"masses", masses_of(simulator.network())},
                   {"bodies", bodies_of(simulator.network())},
-                  {"obstacles", obstacles_of(simulator)}});
+                  {"obstacles", obstacles_of(simulator)},
+                  {"forces", simulator.settings().record_contact_forces}});
 }
 
 std::string diverged_text(std::uint32_t number, std::uint32_t generation, const LiveRun& run) {

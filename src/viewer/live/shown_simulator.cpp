@@ -4,7 +4,9 @@
 #include "simulation/diagnostics.h"
 #include "simulation/model.h"
 
+#include <array>
 #include <utility>
+#include <variant>
 
 namespace sprung {
 
@@ -42,7 +44,12 @@ FrameState state_of(const Simulator& simulator) {
     if (network.activity.is_pinned(i)) state.states[static_cast<std::size_t>(i)] |= kPinned;
   }
   for (const Index i : simulator.contact_particles()) state.states[static_cast<std::size_t>(i)] |= kInContact;
-  if (simulator.settings().record_contact_forces) state.forces = simulator.contact_forces();
+  if (simulator.settings().record_contact_forces) {
+    state.contact_forces = simulator.contact_forces();
+    for (Index i = 0; i < network.particle_count(); ++i) {
+      if (!state.contact_forces.col(i).isZero(0.0)) state.states[static_cast<std::size_t>(i)] |= kHasForce;
+    }
+  }
   for (const Obstacle& obstacle : simulator.obstacles()) {
     if (!obstacle.changes()) continue;
     const RigidTransform pose = obstacle.motion.pose(obstacle.rest_pose, simulator.time());
@@ -53,6 +60,12 @@ FrameState state_of(const Simulator& simulator) {
     }
   }
   return state;
+}
+
+std::string integrator_name(const Simulator& simulator) {
+  constexpr std::array<const char*, std::variant_size_v<IntegratorSettings>> kNames{
+      "explicit_euler", "symplectic_euler", "verlet", "velocity_verlet", "rk4", "implicit_euler"};
+  return kNames[simulator.settings().integrator.index()];
 }
 
 FrameNumbers numbers_of(const Simulator& simulator) {

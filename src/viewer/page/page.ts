@@ -230,7 +230,7 @@ export class Page implements SourceListener {
 
   private setTitle(title: string): void {
     // A changed setting keeps the name that was chosen.
-    if (title !== this.shown.title) this.saveName.value = `${title.replace(/\.json$/, '').replace(/[^\w-]/g, '_').slice(0, 60)}_1`;
+    if (title !== this.shown.title) this.saveName.value = `${title.replace(/\.json$/, '').replace(/[^\w-]/g, '_').slice(0, 40)}_1`;
     this.shown.title = title;
     byId('title').textContent = title;
     this.toolbar.setExample(title);
@@ -242,7 +242,7 @@ export class Page implements SourceListener {
     const live = !this.recorded;
     // A file leaves out the speeds.
     const speed = complete && !(this.source instanceof EmbeddedRun);
-    this.panel.offer({ springs: complete, pins: complete, contacts: complete, forces: live }, { stretch: complete, speed, contact: complete });
+    this.panel.offer({ springs: complete, pins: complete, contacts: complete, forces: message.forces ?? false }, { stretch: complete, speed, contact: complete });
     const save = (name: string) => () => {
       if (live) this.send({ do: 'obj', run: 0, body: name });
       else if (this.shown.models[0]) downloadText(`${name}.obj`, objText(this.shown.models[0], name));
@@ -272,7 +272,6 @@ export class Page implements SourceListener {
       return;
     }
     if (!this.recorded) model.history.add(header.time, frame.numbers);
-    else this.toolbar.setFrame(header.frame);
     this.plotted.stale = true;
     this.view.invalidate();
   }
@@ -376,7 +375,7 @@ export class Page implements SourceListener {
       }
     });
     for (const as of ['run', 'page'] as const) {
-      control(`save-${as}`).addEventListener('click', () => this.saveRuns(as));
+      control(`save-${as}`).addEventListener('click', () => this.send({ do: 'save', as, name: this.saveName.value }));
     }
     control('copy-scene').addEventListener('click', () => this.askScene((scene) => void copyScene(scene)));
     control('save-scene').addEventListener('click', () => {
@@ -384,26 +383,17 @@ export class Page implements SourceListener {
     });
   }
 
-  /** A run beside the first one is saved under its name and that of its integrator. */
-  private saveRuns(as: 'run' | 'page'): void {
-    const name = this.saveName.value;
-    control('saved').textContent = '';
-    this.shown.models.forEach(({ scene }, run) => this.send({ do: 'save', run, as, name: run === 0 ? name : `${name}_${scene.integrator}` }));
-  }
-
   /** Gives `use` the scene with its changes. The program knows the pins that were set since it began, and saves the state. */
   private askScene(use: (scene: unknown) => void): void {
     if (this.recorded) return use(this.scenes.get(0)?.changed ?? {});
     this.sceneWanted = use;
-    control('saved').textContent = '';
     const withState = control<HTMLInputElement>('with-state').checked;
     this.send({ do: 'scene', run: 0, ...(withState ? { state: this.saveName.value } : {}) });
   }
 
   /** After cloth_1 comes cloth_2. */
   private savedRun({ name, text }: SavedMessage): void {
-    const saved = control('saved');
-    saved.textContent = `${saved.textContent}\n${text}`.trim();
+    control('saved').textContent = text;
     if (name === '' || name !== this.saveName.value) return;
     const [, stem, number] = /^(.*?)(\d*)$/.exec(name)!;
     this.saveName.value = number ? `${stem}${Number(number) + 1}` : `${stem}_2`;
@@ -427,6 +417,8 @@ export class Page implements SourceListener {
     this.plotted = { time: now, stale: false };
     this.plots.draw(this.shown.models, this.recorded || this.looksBack);
     this.showReadout();
+    // Setting the slider forces a layout, so not in each animation frame.
+    if (this.recorded) this.toolbar.setFrame(this.player.frame);
     // A simulator that a program steps has no scene.
     this.selection.show(!this.recorded && !this.looksBack && Object.keys(this.shown.models[0]?.scene.scene ?? {}).length > 0);
   }

@@ -40,17 +40,14 @@ class Writer {
   Bytes& bytes_;
 };
 
-constexpr std::uint32_t kPlaying = 1;
-constexpr std::uint32_t kHasForces = 2;
-
-void write_header(MessageKind kind, const MessageHeader& header, Index particles, std::uint32_t flags, Writer& writer) {
+void write_header(MessageKind kind, const MessageHeader& header, Index particles, Writer& writer) {
   writer.number(static_cast<std::uint32_t>(kind));
   writer.number(header.run);
   writer.number(header.generation);
   writer.number(header.frame);
   writer.number(header.time);
   writer.count(particles);
-  writer.number(flags | (header.playing ? kPlaying : 0U));
+  writer.number(static_cast<std::uint32_t>(header.playing ? 1 : 0));
 }
 
 }  // namespace
@@ -58,7 +55,7 @@ void write_header(MessageKind kind, const MessageHeader& header, Index particles
 Bytes topology_message(const MessageHeader& header, const Topology& topology) {
   Bytes bytes;
   Writer writer(bytes);
-  write_header(MessageKind::topology, header, topology.particles, 0, writer);
+  write_header(MessageKind::topology, header, topology.particles, writer);
   writer.count(topology.triangles.cols());
   writer.count(topology.segments.cols());
   writer.count(topology.springs.cols());
@@ -83,7 +80,7 @@ Bytes frame_message(const MessageHeader& header, const FrameNumbers& numbers, co
   Bytes bytes;
   bytes.reserve(64 + static_cast<std::size_t>(17 * state.positions.cols()));
   Writer writer(bytes);
-  write_header(MessageKind::frame, header, static_cast<Index>(state.positions.cols()), state.forces ? kHasForces : 0U, writer);
+  write_header(MessageKind::frame, header, static_cast<Index>(state.positions.cols()), writer);
   for (const double value :
        {numbers.kinetic, numbers.elastic, numbers.gravity, numbers.max_stretch, static_cast<double>(numbers.contacts),
         numbers.frame_ms, numbers.realtime, static_cast<double>(numbers.infeasible), numbers.contact_energy, numbers.pull}) {
@@ -99,8 +96,8 @@ Bytes frame_message(const MessageHeader& header, const FrameNumbers& numbers, co
     writer.array<float>(Vector3(pose.translation()));
   }
   for (const Points& vertices : state.deformed) writer.array<float>(vertices);
-  for (std::size_t i = 0; state.forces && i < state.states.size(); ++i) {
-    if ((state.states[i] & kInContact) != 0) writer.array<float>(Vector3(state.forces->col(static_cast<Index>(i))));
+  for (Index i = 0; i < static_cast<Index>(state.contact_forces.cols()); ++i) {
+    if ((state.states[static_cast<std::size_t>(i)] & kHasForce) != 0) writer.array<float>(Vector3(state.contact_forces.col(i)));
   }
   return bytes;
 }

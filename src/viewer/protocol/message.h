@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace sprung {
@@ -55,14 +54,17 @@ struct FrameNumbers {
   double pull = 0.0;  ///< the force of the hand [N]
 };
 
+/// The state of a particle on which contact acted in the frame, with a force that is known; see also kInContact.
+inline constexpr std::uint8_t kHasForce = 4;
+
 /// The state of a run.
 struct FrameState {
   Points positions{3, 0};               ///< [m]
   Scalars speeds{};                     ///< [m/s]
-  std::vector<std::uint8_t> states;     ///< of particles: kInContact, kPinned
+  std::vector<std::uint8_t> states;     ///< of particles: kInContact, kPinned, kHasForce
   std::vector<RigidTransform> poses{};  ///< of rigid obstacles that move
   std::vector<Points> deformed{};       ///< vertices of deforming obstacles [m]
-  std::optional<Points> forces{};       ///< of contact on all particles [N], if they are known
+  Points contact_forces{3, 0};          ///< [N], of all particles; empty if they are not known
 };
 
 [[nodiscard]] Bytes topology_message(const MessageHeader& header, const Topology& topology);

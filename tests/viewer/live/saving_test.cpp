@@ -196,19 +196,19 @@ TEST_F(SavingViewer, SavesBesideTheSceneAndNeverTwiceUnderAName) {
   serve();
   TestPage page(server_->port());
   page.send({{"do", "pause"}});
-  page.send({{"do", "save"}, {"run", 0}, {"as", "run"}, {"name", "first"}});
+  page.send({{"do", "save"}, {"as", "run"}, {"name", "first"}});
   const Json saved_run = page.text("saved");
   EXPECT_EQ(saved_run["name"], "first");
   EXPECT_THAT(saved_run["text"].get<std::string>(),
-              HasSubstr((saved("scenes") / "first").string() + ". sprung view and sprung export read this folder."));
+              HasSubstr((saved("scenes") / "first").string() + ". sprung view and sprung export read such folders."));
   EXPECT_GE(RecordedRun(saved("scenes") / "first").frames(), 1);
-  page.send({{"do", "save"}, {"run", 0}, {"as", "run"}, {"name", "first"}});
+  page.send({{"do", "save"}, {"as", "run"}, {"name", "first"}});
   const Json refused = page.text("saved");
   EXPECT_EQ(refused["name"], "");
   EXPECT_THAT(refused["text"].get<std::string>(), HasSubstr("is taken"));
-  page.send({{"do", "save"}, {"run", 0}, {"as", "page"}, {"name", "../up"}});
+  page.send({{"do", "save"}, {"as", "page"}, {"name", "../up"}});
   EXPECT_EQ(page.text("saved")["name"], "");
-  page.send({{"do", "save"}, {"run", 0}, {"as", "film"}, {"name", "other"}});
+  page.send({{"do", "save"}, {"as", "film"}, {"name", "other"}});
   EXPECT_THAT(page.text("error")["text"].get<std::string>(), HasSubstr("run or page"));
   EXPECT_EQ(files("scenes"), 2u);
   EXPECT_EQ(files("."), 1u) << "the scenes alone";
@@ -219,8 +219,8 @@ TEST_F(SavingViewer, SavesIntoTheFolderThatWasChosen) {
   serve(saved("elsewhere"));
   TestPage page(server_->port());
   page.send({{"do", "pause"}});
-  page.send({{"do", "save"}, {"run", 0}, {"as", "page"}, {"name", "page"}});
-  EXPECT_THAT(page.text("saved")["text"].get<std::string>(), HasSubstr("page.html. It plays in any browser."));
+  page.send({{"do", "save"}, {"as", "page"}, {"name", "page"}});
+  EXPECT_THAT(page.text("saved")["text"].get<std::string>(), HasSubstr("page.html. A page plays in any browser."));
   std::ifstream file(saved("elsewhere") / "page.html");
   const std::string html(std::istreambuf_iterator<char>(file), {});
   EXPECT_THAT(html, HasSubstr("<script type=\"application/json\" id=\"sprung-run\">"));

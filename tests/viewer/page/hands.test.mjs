@@ -323,3 +323,18 @@ test('forces of contact of a body at rest carry its weight, are shown as arrows,
   await harness.control(second, 'view-forces').waitFor({ state: 'hidden' });
   await harness.closePage(second);
 });
+
+test('occlusion darkens the picture, and nothing else changes it', async () => {
+  const { page } = await openExample('jelly_on_stairs');
+  const facts = async (on) => {
+    await harness.control(page, 'view-occlusion').setChecked(on);
+    await harness.drawn(page);
+    return harness.pictureFacts(page);
+  };
+  const plain = await facts(false);
+  const occluded = await facts(true);
+  assert.ok(occluded.brightness < plain.brightness - 0.1, `${occluded.brightness} of ${plain.brightness}`);
+  assert.ok(occluded.brightness > 0.8 * plain.brightness);
+  assert.deepEqual(await facts(false), plain);
+  await harness.closePage(page);
+});

@@ -176,6 +176,11 @@ export function largestDifference(a, b) {
 
 /** The number of different colours in the picture without the texts at its edges: an empty one has few. */
 export async function colourCount(page) {
+  return (await pictureFacts(page)).colours;
+}
+
+/** Of the same part of the picture also the mean brightness, from 0 to 255. */
+export async function pictureFacts(page) {
   const { x, y, width, height } = await page.locator('canvas').first().boundingBox();
   const clip = { x, y: y + 60, width, height: height - 140 };
   const picture = (await page.screenshot({ clip })).toString('base64');
@@ -186,6 +191,8 @@ export async function colourCount(page) {
     const canvas = new OffscreenCanvas(image.width, image.height);
     const context = canvas.getContext('2d');
     context.drawImage(image, 0, 0);
-    return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size;
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    const sum = data.reduce((total, value, k) => total + (k % 4 === 3 ? 0 : value), 0);
+    return { colours: new Set(new Uint32Array(data.buffer)).size, brightness: sum / (0.75 * data.length) };
   }, picture);
 }

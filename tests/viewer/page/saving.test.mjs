@@ -76,6 +76,9 @@ test('two runs side by side are saved both, the second under the name of its int
   await harness.advance(page, 2);
   await harness.control(page, 'save-run').click();
   await harness.control(page, 'saved').getByText('rope_1_implicit_euler').waitFor();
+  await harness.control(page, 'save-name').fill('');
+  await harness.control(page, 'save-run').click();
+  await harness.control(page, 'saved').getByText('must be 1 to 64 letters').waitFor();
   assert.deepEqual(readdirSync(folder).sort(), ['rope.json', 'rope_1', 'rope_1_implicit_euler']);
   const { scene } = JSON.parse(readFileSync(join(folder, 'rope_1_implicit_euler', 'run.json'), 'utf8'));
   assert.equal(scene.integrator.type, 'implicit_euler');

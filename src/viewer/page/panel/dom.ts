@@ -24,7 +24,7 @@ export function setOptions(select: HTMLSelectElement, options: readonly { value:
 /** A number for people: at most `digits` digits that count. */
 export function short(value: number, digits = 3): string {
   if (!Number.isFinite(value)) return '-';
-  if (value !== 0 && (Math.abs(value) < 1e-4 || Math.abs(value) >= 1e6)) return value.toExponential(Math.max(digits - 1, 0));
+  if (value !== 0 && (Math.abs(value) < 1e-4 || Math.abs(value) >= 1e6)) return value.toExponential(Math.max(digits - 1, 0)).replace(/\.?0+e/, 'e');
   return String(Number(value.toPrecision(digits)));
 }
 

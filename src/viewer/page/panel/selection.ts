@@ -1,6 +1,6 @@
 import { control, short } from './dom';
 import type { Pick } from '../picture/picking';
-import { IN_CONTACT, SPRING_KINDS } from '../run/protocol';
+import { HAS_FORCE, SPRING_KINDS } from '../run/protocol';
 import type { Command, SceneMessage, TensionMessage } from '../run/protocol';
 import type { RunModel } from '../run/run_model';
 import type { SceneView } from '../picture/scene_view';
@@ -93,7 +93,7 @@ function particleText(model: RunModel, particle: number, spring: number | null, 
     `position ${[...at].map((value) => value.toFixed(3)).join(', ')} m`,
     `speed ${short(speeds[particle])} m/s`,
   ];
-  if (contactForces && states[particle] & IN_CONTACT) {
+  if (contactForces && states[particle] & HAS_FORCE) {
     lines.push(`contact ${short(Math.hypot(...contactForces.subarray(3 * particle, 3 * particle + 3)))} N`);
   }
   if (spring !== null) {

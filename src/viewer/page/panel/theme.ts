@@ -12,6 +12,7 @@ export interface Theme {
   pin: Color;
   contact: Color;
   force: Color;
+  velocity: Color;
   mark: Color;
   drag: Color;
 }
@@ -26,6 +27,7 @@ export const LIGHT: Theme = {
   pin: new Color('#1b2a41'),
   contact: new Color('#d55e00'),
   force: new Color('#b5179e'),
+  velocity: new Color('#1f8a4c'),
   mark: new Color('#d0021b'),
   drag: new Color('#1d2733'),
 };
@@ -40,6 +42,7 @@ export const DARK: Theme = {
   pin: new Color('#f2f5fa'),
   contact: new Color('#ff9142'),
   force: new Color('#ff85d0'),
+  velocity: new Color('#74d99f'),
   mark: new Color('#ff4d4d'),
   drag: new Color('#e6ebf2'),
 };

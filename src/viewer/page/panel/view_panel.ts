@@ -34,7 +34,7 @@ export class ViewPanel {
     this.set('springs', !hasSurface);
   }
 
-  /** A recorded run has no speeds; one whose scene is gone has no springs and pins either. */
+  /** A recorded run has no speeds and no forces; one whose scene is gone has no springs and pins either. */
   offer(switches: Record<'springs' | 'pins' | 'contacts' | 'forces', boolean>, colors: Record<Exclude<ColorMode, 'plain'>, boolean>): void {
     for (const box of this.boxes) {
       const offered = switches[box.value as 'springs'] ?? true;

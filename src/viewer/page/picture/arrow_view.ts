@@ -12,11 +12,13 @@ export class ArrowView {
   readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   private readonly ends: BufferAttribute;
 
-  constructor(particles: number) {
+  /** Arrows that are `inFront` are not hidden by surfaces: forces act at surfaces, and point into what they push. */
+  constructor(particles: number, inFront = false) {
     this.ends = new BufferAttribute(new Float32Array(3 * ENDS * particles), 3).setUsage(DynamicDrawUsage);
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', this.ends);
-    this.lines = new LineSegments(geometry, new LineBasicMaterial());
+    this.lines = new LineSegments(geometry, new LineBasicMaterial({ depthTest: !inFront }));
+    this.lines.renderOrder = inFront ? 2 : 0;
     this.lines.visible = this.lines.frustumCulled = false;
   }
 

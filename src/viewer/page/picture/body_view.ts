@@ -14,13 +14,14 @@ import { Dots } from './dots';
 import { MassView } from './mass_view';
 import { looksOf, surfaceMaterial } from './looks';
 import { vertexNormals } from './normals';
+import { SURFACES } from './occlusion';
 import { IN_CONTACT, PINNED } from '../run/protocol';
 import { RopeView } from './rope_view';
 import type { RunModel } from '../run/run_model';
 import type { Theme } from '../panel/theme';
 import type { ViewOptions } from './view_options';
 
-/** The arrow of a velocity is as long as the way of its particle in this time [s]. */
+/** The arrow of a velocity is the displacement in this time [s]. */
 const SHOWN_TIME = 0.1;
 /** How long the arrow of the largest force on the scale is, by the extent of the bodies. */
 const LONGEST_FORCE = 0.2;
@@ -79,7 +80,7 @@ export class BodyView {
     const few = masses && masses.length > 0 && masses.length <= MOST_BALLS && topology.triangles.length === 0;
     this.balls = few ? new MassView(masses, Math.max(0.035 * size, 2 * this.tubeRadius)) : null;
     this.velocities = new ArrowView(topology.particles);
-    this.forces = new ArrowView(topology.particles);
+    this.forces = new ArrowView(topology.particles, true);
     this.moved = new Float32Array(model.positions.length);
     this.pins = new Dots(this.positions, pinSize(model));
     this.contacts = new Dots(this.positions, 6);
@@ -89,6 +90,7 @@ export class BodyView {
     this.group.add(this.surface, this.springs, this.velocities.lines, this.forces.lines, ...dots);
     if (this.balls) this.group.add(this.balls.mesh);
     if (this.rope) this.group.add(this.rope.group);
+    for (const mesh of [this.surface, this.balls?.mesh, ...(this.rope?.group.children ?? [])]) mesh?.layers.enable(SURFACES);
     this.surface.frustumCulled = this.springs.frustumCulled = false;
   }
 
@@ -136,7 +138,7 @@ export class BodyView {
     this.forces.hide();
     if (options.velocities && elapsed > 0) {
       for (let k = 0; k < positions.length; ++k) this.moved[k] = positions[k] - previous[k];
-      this.velocities.show(positions, this.moved, SHOWN_TIME / elapsed, theme.contact);
+      this.velocities.show(positions, this.moved, SHOWN_TIME / elapsed, theme.velocity);
     }
     if (options.forces && contactForces && force > 0) {
       this.forces.show(positions, contactForces, (LONGEST_FORCE * this.size) / force, theme.force);
@@ -194,10 +196,10 @@ export class BodyView {
     bodies.forEach(({ first, count }, k) => {
       let end = begin;
       while (end < triangles.length && triangles[end] < first + count) end += 3;
-      const { roughness, sheen } = looks[k];
-      const key = `${roughness} ${sheen}`;
+      const { roughness, sheen, shape } = looks[k];
+      const key = `${roughness} ${sheen} ${shape}`;
       if (key !== made) {
-        materials.push(surfaceMaterial({ sheen: { value: sheen }, inside: this.inside }));
+        materials.push(surfaceMaterial(shape, { sheen: { value: sheen }, inside: this.inside }));
         materials[materials.length - 1].roughness = roughness;
       }
       made = key;

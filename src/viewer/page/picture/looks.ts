@@ -2,7 +2,10 @@ import { Color, DoubleSide, MeshStandardMaterial } from 'three';
 import type { SceneMessage } from '../run/protocol';
 
 /** How a body looks. */
-export interface Look { color: Color; roughness: number; sheen: number }
+export interface Look { color: Color; roughness: number; sheen: number; shape: SurfaceShape }
+
+/** A box has sharp edges, other solids are smooth; a cloth is seen from both sides. */
+export type SurfaceShape = 'cloth' | 'box' | 'smooth';
 
 /** Chosen to go together on light and dark ground, and to differ in lightness for colour-blind people. */
 const PALETTE = ['#5b95d1', '#e3ad58', '#4fae93', '#d07a8c', '#9a90cf', '#8cc3dc', '#d98653', '#a4b55c'];
@@ -53,7 +56,8 @@ export function looksOf(scene: SceneMessage): Look[] {
       color = new Color(own);
       colors.set(kind, color);
     }
-    return { color, ...(preset ? { roughness: preset.roughness, sheen: preset.sheen } : solid ? SOLID : CLOTH) };
+    const shape = type === 'solid' ? 'box' : solid ? 'smooth' : 'cloth';
+    return { color, shape, ...(preset ? { roughness: preset.roughness, sheen: preset.sheen } : solid ? SOLID : CLOTH) };
   });
 }
 
@@ -65,21 +69,31 @@ export interface SurfaceUniforms {
 }
 
 /**
- * Two-sided cloth: lit by a sheen, with an inside of another tone. Which side is seen follows from the normal, not from the corners'
- * order: along silhouettes and folds the faces that just turn away would be lit from behind, as dark stitches.
+ * The side of a cloth that is seen follows from the normal, not from the corners' order: along silhouettes and folds the faces that
+ * just turn away would be lit from behind, as dark stitches.
  */
-export function surfaceMaterial(uniforms: SurfaceUniforms): MeshStandardMaterial {
+const NORMALS: Record<SurfaceShape, string> = {
+  cloth: `float faceDirection = dot(normalize(vNormal), normalize(vViewPosition)) > -0.15 ? 1.0 : -1.0;
+    vec3 normal = normalize(vNormal) * faceDirection;
+    if (faceDirection < 0.0) diffuseColor.rgb *= inside;`,
+  box: `float faceDirection = 1.0;
+    vec3 normal = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));`,
+  smooth: `float faceDirection = 1.0;
+    vec3 normal = normalize(vNormal);`,
+};
+
+/** A surface that is lit by a sheen; a cloth has an inside of another tone. */
+export function surfaceMaterial(shape: SurfaceShape, uniforms: SurfaceUniforms): MeshStandardMaterial {
   const material = new MeshStandardMaterial({ vertexColors: true, side: DoubleSide });
+  material.customProgramCacheKey = () => shape;
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', '#include <common>\nuniform float sheen;\nuniform float inside;')
       .replace(
         '#include <normal_fragment_begin>',
-        `float faceDirection = dot(normalize(vNormal), normalize(vViewPosition)) > -0.15 ? 1.0 : -1.0;
-        vec3 normal = normalize(vNormal) * faceDirection;
-        vec3 nonPerturbedNormal = normal;
-        if (faceDirection < 0.0) diffuseColor.rgb *= inside;`,
+        `${NORMALS[shape]}
+        vec3 nonPerturbedNormal = normal;`,
       )
       .replace(
         '#include <opaque_fragment>',

@@ -2,6 +2,7 @@ import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, Me
 import type { Vector3 } from 'three';
 import { FloorView } from './floor_view';
 import { creased, vertexNormals } from './normals';
+import { SURFACES } from './occlusion';
 import type { Mesh as MeshData, Motion } from '../run/protocol';
 import type { Theme } from '../panel/theme';
 
@@ -36,6 +37,7 @@ export class ObstacleView {
     this.mesh.frustumCulled = false;
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.floor = floor && new FloorView(data, floor.center, floor.radius);
+    for (const mesh of [this.mesh, this.floor?.mesh]) mesh?.layers.enable(SURFACES);
   }
 
   /** Vertices that picking tests, in the obstacle's frame. */

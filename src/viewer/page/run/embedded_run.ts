@@ -112,14 +112,14 @@ export class EmbeddedRun implements Source {
       states: this.states[number - 1],
       poses: this.data.poses[number - 1].map((pose) => Float32Array.from(pose)),
       deformed: this.deformed(positions.subarray(3 * count)),
-      contactForces: null,
+      contactForces: new Float32Array(0),
     };
     this.listener?.frame(this.header(FRAME, number), decoded);
   }
 
   private header(kind: number, frame: number): Header {
     const time = this.data.times[frame - 1];
-    return { kind, run: 0, generation: 1, frame, time, particles: this.topology.particles, playing: false, forces: false };
+    return { kind, run: 0, generation: 1, frame, time, particles: this.topology.particles, playing: false };
   }
 
   private positions(frame: number): Float32Array {

@@ -34,6 +34,8 @@ export interface SceneMessage {
   masses?: number[];
   bodies: BodyRange[];
   obstacles: { name: string; motion: Motion }[];
+  /** Whether frames have forces of contact. */
+  forces?: boolean;
   diagnostics?: Diagnostics;
   torn?: { frame: number; triangles: number[] }[];
   broken?: { frame: number; springs: number[] }[];
@@ -84,7 +86,7 @@ export type Command =
   | { do: 'drag'; target: [number, number, number] }
   | { do: 'drop'; pin: boolean }
   | { do: 'scene'; run: number; state?: string }
-  | { do: 'save'; run: number; as: 'run' | 'page'; name: string }
+  | { do: 'save'; as: 'run' | 'page'; name: string }
   | { do: 'rewind'; time: number }
   | { do: 'tension'; run: number; spring: number }
   | { do: 'obj'; run: number; body: string }
@@ -98,8 +100,6 @@ export interface Header {
   time: number;
   particles: number;
   playing: boolean;
-  /** Whether a frame has forces of contact. */
-  forces: boolean;
 }
 
 export interface Mesh { vertices: Float32Array; triangles: Uint32Array }
@@ -137,14 +137,15 @@ export interface Frame {
   poses: Float32Array[];
   /** Vertices of the deforming obstacles, in their order. */
   deformed: Float32Array[];
-  /** On the particles in contact [N], three numbers each. */
-  contactForces: Float32Array | null;
+  /** On the particles whose state has the bit HAS_FORCE [N], three numbers each. */
+  contactForces: Float32Array;
 }
 
 export const TOPOLOGY = 1;
 export const FRAME = 2;
 export const IN_CONTACT = 1;
 export const PINNED = 2;
+export const HAS_FORCE = 4;
 /** Kinds of springs, by number. */
 export const SPRING_KINDS = ['structural', 'shear', 'bend'];
 export const STRUCTURAL = 0;
@@ -160,7 +161,6 @@ export function decodeHeader(buffer: ArrayBuffer): Header {
     time: view.getFloat64(16, true),
     particles: view.getUint32(24, true),
     playing: (view.getUint32(28, true) & 1) !== 0,
-    forces: (view.getUint32(28, true) & 2) !== 0,
   };
 }
 
@@ -223,9 +223,9 @@ export function decodeFrame(buffer: ArrayBuffer, header: Header, scene: SceneMes
   scene.obstacles.forEach((obstacle, k) => {
     if (obstacle.motion === 'deforming') deformed.push(reader.f32(topology.obstacles[k].vertices.length));
   });
-  let touching = 0;
-  if (header.forces) for (const state of states) if (state & IN_CONTACT) ++touching;
-  const contactForces = header.forces ? reader.f32(3 * touching) : null;
+  let pushed = 0;
+  for (let i = 0; i < states.length; ++i) if (states[i] & HAS_FORCE) ++pushed;
+  const contactForces = reader.f32(3 * pushed);
   return {
     numbers: { kinetic, elastic, gravity, maxStretch, contacts, frameMs, realtime, infeasible, contactEnergy, pull },
     positions,

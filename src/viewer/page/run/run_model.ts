@@ -1,5 +1,5 @@
 import { History } from './history';
-import { IN_CONTACT } from './protocol';
+import { HAS_FORCE } from './protocol';
 import type { DivergedMessage, Frame, FrameNumbers, Header, SceneMessage, Topology } from './protocol';
 
 export interface BodyState { positions: Float32Array }
@@ -21,8 +21,8 @@ export class RunModel {
   readonly bodies: Record<string, BodyState> = {};
   poses: Float32Array[] = [];
   deformed: Float32Array[] = [];
-  /** The mean force of contact on each particle in the frame [N]; null in recorded runs. */
-  contactForces: Float32Array | null = null;
+  /** The mean force of contact on each particle in the frame [N]; null where it is not known. */
+  readonly contactForces: Float32Array | null;
   numbers: FrameNumbers | null = null;
   frame = 0;
   time = 0;
@@ -38,6 +38,7 @@ export class RunModel {
     this.previous = new Float32Array(3 * count);
     this.speeds = new Float32Array(count);
     this.states = new Uint8Array(count);
+    this.contactForces = scene.forces ? new Float32Array(3 * count) : null;
     this.triangles = topology.triangles.slice();
     this.springs = topology.springs.slice();
     for (const { name, first, count: size } of scene.bodies) {
@@ -62,16 +63,12 @@ export class RunModel {
     this.remove();
   }
 
-  /** A frame has those of the particles in contact alone. */
-  private setContactForces(forces: Float32Array | null): void {
-    if (!forces) {
-      this.contactForces = null;
-      return;
-    }
-    this.contactForces ??= new Float32Array(this.positions.length);
+  /** A frame has those of the particles alone on which contact acted. */
+  private setContactForces(forces: Float32Array): void {
+    if (!this.contactForces) return;
     this.contactForces.fill(0);
     for (let i = 0, at = 0; i < this.states.length; ++i) {
-      if (!(this.states[i] & IN_CONTACT)) continue;
+      if (!(this.states[i] & HAS_FORCE)) continue;
       for (let d = 0; d < 3; ++d) this.contactForces[3 * i + d] = forces[at++];
     }
   }
