@@ -16,14 +16,14 @@ import numpy
 SEED = 0
 FLOOR = (0.80, 0.79, 0.77)
 HORIZON = (0.93, 0.94, 0.96)
-STONE = (0.62, 0.60, 0.57)
+STONE = (0.30, 0.29, 0.28)
 
 # Colour, roughness, sheen, weave and size of its threads [m], larger than real ones so that one sees them; depth of the weave [1].
 FABRICS = {
-    "cotton": dict(color=(0.74, 0.20, 0.13), roughness=0.85, sheen=0.4, weave="plain", thread=0.006, depth=0.35),
+    "cotton": dict(color=(0.50, 0.075, 0.04), roughness=0.85, sheen=0.4, weave="plain", thread=0.006, depth=0.35),
     "silk": dict(color=(0.02, 0.24, 0.27), roughness=0.28, sheen=0.2, specular=0.7, weave="plain", thread=0.002, depth=0.02),
     "wool": dict(color=(0.55, 0.33, 0.12), roughness=1.0, sheen=1.0, weave="twill", thread=0.014, depth=0.5),
-    "denim": dict(color=(0.045, 0.085, 0.22), second=(0.13, 0.19, 0.33), roughness=0.9, sheen=0.2, weave="twill", thread=0.008, depth=0.4),
+    "denim": dict(color=(0.045, 0.085, 0.22), second=(0.13, 0.19, 0.33), roughness=0.9, sheen=0.2, weave="twill", thread=0.005, depth=0.4),
     "jersey": dict(color=(0.34, 0.36, 0.40), roughness=0.95, sheen=0.6, weave="plain", thread=0.008, depth=0.3),
     "leather": dict(color=(0.16, 0.06, 0.025), roughness=0.45, weave="grain", thread=0.012, depth=0.3),
     "felt": dict(color=(0.06, 0.24, 0.10), roughness=1.0, sheen=1.0, weave="noise", thread=0.004, depth=0.3),
@@ -39,24 +39,48 @@ FABRICS = {
     "rubber_block": dict(color=(0.03, 0.03, 0.035), roughness=0.5, weave="none"),
 }
 # Of bodies without a material, one after the other.
-COLORS = [(0.74, 0.20, 0.13), (0.05, 0.25, 0.45), (0.80, 0.50, 0.08), (0.10, 0.35, 0.20), (0.45, 0.15, 0.40)]
+COLORS = [(0.45, 0.055, 0.03), (0.03, 0.14, 0.32), (0.62, 0.34, 0.04), (0.06, 0.24, 0.12), (0.28, 0.08, 0.26)]
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="render.sh")
+    parser = argparse.ArgumentParser(prog="render.sh", usage="render.sh DIR [OPTION...] [FRAME...]")
     parser.add_argument("folder")
-    parser.add_argument("frames", nargs="*", type=int)
+    parser.add_argument("frames", nargs="*", type=int, metavar="FRAME")
     parser.add_argument("--pictures", required=True)
     parser.add_argument("--size", default="960x720")
-    parser.add_argument("--samples", type=int, default=96)
+    parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--camera", default="")
     parser.add_argument("--azimuth", type=float, default=30.0)
     parser.add_argument("--elevation", type=float, default=18.0)
     parser.add_argument("--zoom", type=float, default=1.0)
     parser.add_argument("--hide", default="")
+    parser.add_argument("--obstacles", default="")
     parser.add_argument("--radius", type=float, default=0.0)
     parser.add_argument("--threads", type=int, default=0)
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
+
+
+def kind_of(name):
+    """The name without number, letter or side; bodies of one kind get one colour."""
+    return re.sub(r"(\d+|[_-]([a-z]|left|right|east|west|north|south|front|back))$", "", name, flags=re.IGNORECASE).rstrip("_-")
+
+
+def numbers_of(text, count, option, example, separator=","):
+    """The numbers of an option. Exits if they are not so many."""
+    try:
+        numbers = [float(word) for word in text.split(separator)]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count or not all(map(math.isfinite, numbers)):
+        raise SystemExit(f"render.sh: {option} {text}: must be {count} numbers, as in {example}")
+    return numbers
+
+
+def linear(color):
+    """#RRGGBB as Blender has colours."""
+    if not re.fullmatch(r"#[0-9a-fA-F]{6}", color):
+        raise SystemExit(f"render.sh: --obstacles {color}: not a colour; write it as #RRGGBB")
+    return mathutils.Color(int(color[k:k + 2], 16) / 255.0 for k in (1, 3, 5)).from_srgb_to_scene_linear()
 
 
 def to_blender(points):
@@ -100,15 +124,22 @@ class Run:
     def __init__(self, folder, hidden):
         with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
             self.scene = json.load(file)["scene"]
+        for name in hidden:
+            if name not in self.scene["bodies"] and name not in self.scene.get("obstacles", {}):
+                raise SystemExit(f"render.sh: --hide {name}: no such body or obstacle")
         self.bodies = {name: files_of(os.path.join(folder, name)) for name in self.scene["bodies"] if name not in hidden}
         if not all(self.bodies.values()):
             raise SystemExit(f"render.sh: {folder} has no OBJ files of a body; make them with: sprung export {folder} --format obj")
+        if not self.bodies:
+            raise SystemExit("render.sh: --hide: no body is left to show")
         self.frames = sorted(set.intersection(*(set(files) for files in self.bodies.values())))
         self.obstacles = {}
         for name in self.scene.get("obstacles", {}):
             sequence = files_of(os.path.join(folder, "obstacles", name))
             if name not in hidden and not self.is_floor(name):
                 self.obstacles[name] = sequence or {0: os.path.join(folder, "obstacles", name + ".obj")}
+                if not all(os.path.isfile(path) for path in self.obstacles[name].values()):
+                    raise SystemExit(f"render.sh: {folder} has no OBJ file of obstacle {name}; make it with: sprung export {folder} --format obj")
 
     def is_floor(self, name):
         """A half-space that looks straight up: the floor of the picture stands for it."""
@@ -187,8 +218,8 @@ def rest_uv(vertices, corners, totals):
     return numpy.take_along_axis(vertices[corners], keep, 1)
 
 
-def tubes(name, shape, radius, material, collection):
-    """Lines as round ropes, with beads where there are only a few particles."""
+def tubes(name, shape, radius, material, beads, collection):
+    """Lines as round ropes; with beads they are masses on springs."""
     curve = bpy.data.curves.new(name, "CURVE")
     curve.dimensions, curve.bevel_depth, curve.bevel_resolution, curve.use_fill_caps = "3D", radius, 4, True
     for chain in chains_of(shape.lines):
@@ -197,7 +228,7 @@ def tubes(name, shape, radius, material, collection):
         spline.points.foreach_set("co", numpy.c_[shape.vertices[chain], numpy.ones(len(chain))].ravel())
         spline.use_smooth = True
     new_object(name, curve, collection).data.materials.append(material)
-    if len(shape.vertices) <= 12:
+    if beads:
         for point in shape.vertices:
             ball = bpy.data.meshes.new(name)
             add_ball(ball, 2.5 * radius)
@@ -312,7 +343,7 @@ def floor_material(extent):
     length = nodes.add("ShaderNodeVectorMath", operation="LENGTH")
     nodes.link(nodes.add("ShaderNodeTexCoord").outputs["Object"], length.inputs[0])
     fade = nodes.add("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP")
-    fade.inputs["From Min"].default_value, fade.inputs["From Max"].default_value = 1.2 * extent, 6.0 * extent
+    fade.inputs["From Min"].default_value, fade.inputs["From Max"].default_value = 0.7 * extent, 3.0 * extent
     nodes.link(length.outputs["Value"], fade.inputs["Value"])
     sky = nodes.add("ShaderNodeEmission")
     sky.inputs["Color"].default_value = (*HORIZON, 1.0)
@@ -347,8 +378,8 @@ def add_lights(center, extent, azimuth):
         angle = math.radians(azimuth + degrees)
         return math.sin(angle), -math.cos(angle), up
     unit = extent * extent  # so that a scene of any size is lit alike
-    add_light(center, around(-60, 1.1), 2.2 * extent, 1.3 * extent, 36.0 * unit)
-    add_light(center, around(75, 0.5), 2.6 * extent, 2.0 * extent, 6.0 * unit)
+    add_light(center, around(-60, 1.1), 2.2 * extent, 0.9 * extent, 40.0 * unit)
+    add_light(center, around(75, 0.5), 2.6 * extent, 2.0 * extent, 4.0 * unit)
     add_light(center, around(160, 0.9), 2.4 * extent, 1.0 * extent, 22.0 * unit)
     world = bpy.data.worlds.new("sky")
     world.use_nodes = True
@@ -358,7 +389,7 @@ def add_lights(center, extent, azimuth):
     # The camera sees the horizon as bright as the far floor; surfaces get less light from it.
     ray = tree.nodes.new("ShaderNodeLightPath")
     strength = tree.nodes.new("ShaderNodeMapRange")
-    strength.inputs["To Min"].default_value, strength.inputs["To Max"].default_value = 0.22, 1.0
+    strength.inputs["To Min"].default_value, strength.inputs["To Max"].default_value = 0.16, 1.0
     tree.links.new(ray.outputs["Is Camera Ray"], strength.inputs["Value"])
     tree.links.new(strength.outputs[0], sky.inputs["Strength"])
     bpy.context.scene.world = world
@@ -372,7 +403,7 @@ def add_camera(options, points, aspect):
     thing = new_object("camera", data, bpy.context.scene.collection)
     bpy.context.scene.camera = thing
     if options.camera:
-        numbers = numpy.array([float(word) for word in options.camera.split(",")])
+        numbers = numpy.array(numbers_of(options.camera, 6, "--camera", "3,2,3,0,1,0"))
         position, target = to_blender(numbers.reshape(2, 3))
         toward = position - target
     else:
@@ -397,7 +428,9 @@ def add_camera(options, points, aspect):
 
 def set_up_cycles(options):
     scene = bpy.context.scene
-    width, height = (int(word) for word in options.size.split("x"))
+    width, height = (int(number) for number in numbers_of(options.size, 2, "--size", "960x720", "x"))
+    if min(width, height) < 4 or options.samples < 1 or options.zoom <= 0.0:
+        raise SystemExit("render.sh: --size, --samples and --zoom must be positive, and a picture has at least 4 x 4 pixels")
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples, scene.cycles.seed = options.samples, SEED
@@ -409,11 +442,36 @@ def set_up_cycles(options):
     scene.render.image_settings.color_depth, scene.render.image_settings.compression = "8", 90
     scene.render.use_stamp = scene.render.use_persistent_data = False
     scene.view_settings.view_transform = "Filmic"
-    scene.view_settings.look = "Medium High Contrast"
-    scene.view_settings.exposure = 0.25
+    scene.view_settings.look = "High Contrast"
+    scene.view_settings.exposure = 0.1
     if options.threads:
         scene.render.threads_mode, scene.render.threads = "FIXED", options.threads
     return width / height
+
+
+def set_up_denoising():
+    """Debian's Blender has no denoiser. A bilateral blur smooths the diffuse light, but not across edges of the surface's normal, and
+    leaves colours and reflections as they are."""
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    layer.use_pass_diffuse_direct = layer.use_pass_diffuse_indirect = layer.use_pass_diffuse_color = layer.use_pass_normal = True
+    scene.use_nodes = True
+    tree = scene.node_tree
+    passes, result = tree.nodes["Render Layers"].outputs, tree.nodes["Composite"].inputs["Image"]
+
+    def mix(operation, a, b):
+        node = tree.nodes.new("CompositorNodeMixRGB")
+        node.blend_type = operation
+        tree.links.new(a, node.inputs[1])
+        tree.links.new(b, node.inputs[2])
+        return node.outputs[0]
+
+    light = mix("ADD", passes["DiffDir"], passes["DiffInd"])
+    blur = tree.nodes.new("CompositorNodeBilateralblur")
+    blur.iterations, blur.sigma_color, blur.sigma_space = 2, 0.1, 4.0
+    tree.links.new(light, blur.inputs["Image"])
+    tree.links.new(passes["Normal"], blur.inputs["Determinator"])
+    change = mix("MULTIPLY", passes["DiffCol"], mix("SUBTRACT", blur.outputs[0], light))
+    tree.links.new(mix("ADD", passes["Image"], change), result)
 
 
 def clear(collection):
@@ -426,16 +484,18 @@ def clear(collection):
 class Stage:
     """Puts the bodies and obstacles of a frame before the camera."""
 
-    def __init__(self, run, extent, radius):
+    def __init__(self, run, extent, radius, obstacles):
         self.run, self.radius = run, radius or 0.008 * extent
         self.collection = bpy.data.collections.new("frame")
         bpy.context.scene.collection.children.link(self.collection)
-        self.stone = plain_material("stone", STONE, 0.75)
+        self.stone = plain_material("stone", linear(obstacles) if obstacles else STONE, 0.75)
         self.rest, self.materials = {}, {}
-        for number, (name, files) in enumerate(run.bodies.items()):
+        kinds = list(dict.fromkeys(kind_of(name) for name in run.bodies))
+        for name, files in run.bodies.items():
             self.rest[name] = run.shape(files, run.frames[0])
             preset = run.scene["bodies"][name].get("material", "")
-            self.materials[name] = body_material(name, preset, COLORS[number % len(COLORS)])
+            self.materials[name] = body_material(name, preset, COLORS[kinds.index(kind_of(name)) % len(COLORS)])
+        self.beads = sum(len(shape.vertices) for shape in self.rest.values()) <= 12
 
     def set(self, frame):
         clear(self.collection)
@@ -453,7 +513,7 @@ class Stage:
         material = self.materials[name]
         if shape.lines:
             radius = 0.5 * described.get("diameter", 0.0) or described.get("thickness", 0.0) or self.radius
-            tubes(name, shape, max(radius, 0.5 * self.radius), material, self.collection)
+            tubes(name, shape, max(radius, 0.5 * self.radius), material, self.beads, self.collection)
         if not shape.faces:
             return
         faces = quads_of(shape.faces) if kind == "cloth" else shape.faces
@@ -482,6 +542,7 @@ def render():
         raise SystemExit(f"render.sh: {options.folder} has no frame {missing[0]}; it has {run.frames[0]} to {run.frames[-1]}")
     frames = options.frames or run.frames
     aspect = set_up_cycles(options)
+    set_up_denoising()
     points = run.points(sorted(frames)[::max(1, len(frames) // 12)] + [max(frames)])
     low, high = points.min(0), points.max(0)
     center, extent = 0.5 * (low + high), float(numpy.linalg.norm(high - low))
@@ -489,19 +550,20 @@ def render():
     add_floor(height, center, extent)
     add_lights(center, extent, options.azimuth)
     add_camera(options, points, aspect)
-    stage = Stage(run, extent, options.radius)
+    stage = Stage(run, extent, options.radius, options.obstacles)
     for frame in frames:
         path = os.path.join(options.pictures, f"{frame:04}.png")
         stage.set(frame)
         bpy.context.scene.render.filepath = path
         bpy.ops.render.render(write_still=True)
-        print(f"render.sh: frame {frame}: {path}", file=sys.stderr)
+        print(f"render.sh: frame {frame} is rendered", file=sys.stderr)
 
 
 try:
     render()
 except SystemExit as end:
-    print(end, file=sys.stderr)
+    if isinstance(end.code, str):
+        print(end, file=sys.stderr)
     sys.stderr.flush()
     os._exit(2)
 except BaseException:
