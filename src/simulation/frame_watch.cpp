@@ -23,7 +23,7 @@ constexpr double kManyFrames = 0.1;
 constexpr double kFallsWithinGap = 16.0;
 
 // A step that has to be smaller by more than this factor is no remedy that anyone can wait for.
-constexpr double kMostTimesSmaller = 256.0;
+constexpr double kMostTimesSmaller = 4096.0;
 
 /// The smallest gap [m] between any body and obstacle, two bodies, or two sheets of a body; infinite if nothing can collide.
 double thinnest_gap(const std::vector<Body>& bodies, const std::vector<Obstacle>& obstacles) {
