@@ -14,7 +14,9 @@ test('live', async () => {
   const server = await harness.view(harness.example('cloth_on_bunny'));
   const page = await harness.openPage(server.address, { viewport, before });
   await harness.firstFrame(page);
-  await harness.control(page, 'view-shadows').check(); // off where there is no graphics card
+  // Off where there is no graphics card.
+  await harness.control(page, 'view-shadows').check();
+  await harness.control(page, 'view-occlusion').check();
   await harness.play(page);
   await harness.until(page, () => window.sprung.frame >= 22);
   await harness.pause(page);
