@@ -20,7 +20,7 @@ declare -A frames=(
   [gripper]="28 68 82"
   [rope_bridge]="31"
   [torn_cloth]="44"
-  [lab_rope]="38"
+  [lab_rope]="12 24 90"
   [two_masses]="1 8 15"
   [heavy_mass]="1 14 27"
   [five_node_rope]="300"
@@ -37,7 +37,7 @@ declare -A look=(
   [rope_over_torus]="--elevation 32"
   [gripper]="--size 420x560 --elevation 8"
   [torn_cloth]="--elevation 38"
-  [lab_rope]="--azimuth 0 --elevation 4 --radius 0.03"
+  [lab_rope]="--size 420x420 --azimuth 0 --elevation 4 --radius 0.03"
   [two_masses]="--size 240x480 --azimuth 0 --elevation 4 --radius 0.04"
   [heavy_mass]="--size 240x480 --azimuth 0 --elevation 4 --radius 0.04"
   [five_node_rope]="--azimuth 0 --elevation 4 --radius 0.1"
@@ -63,7 +63,7 @@ shrink() { mogrify -strip +dither -colors 256 -define png:exclude-chunks=date,ti
 # The same drape of each fabric.
 materials() {
   local material output
-  for material in silk cotton denim rubber_sheet paper; do
+  for material in silk cotton wool denim rubber_sheet paper; do
     output=build/frames/materials_$material
     simulate materials "$output" --frames 60 --set "bodies.cloth.material=$material" --set "bodies.cloth.shape.resolution=[128,128]"
     examples/render.sh "$output" --out "$pictures/materials_$material.png" --size 480x420 --samples "$samples" 60

@@ -22,7 +22,7 @@ STONE = (0.30, 0.29, 0.28)
 FABRICS = {
     "cotton": dict(color=(0.50, 0.075, 0.04), roughness=0.85, sheen=0.4, weave="plain", thread=0.006, depth=0.35),
     "silk": dict(color=(0.02, 0.24, 0.27), roughness=0.28, sheen=0.2, specular=0.7, weave="plain", thread=0.002, depth=0.02),
-    "wool": dict(color=(0.55, 0.33, 0.12), roughness=1.0, sheen=1.0, weave="twill", thread=0.014, depth=0.5),
+    "wool": dict(color=(0.42, 0.30, 0.16), roughness=1.0, sheen=0.3, weave="twill", thread=0.009, depth=0.5),
     "denim": dict(color=(0.045, 0.085, 0.22), second=(0.13, 0.19, 0.33), roughness=0.9, sheen=0.2, weave="twill", thread=0.005, depth=0.4),
     "jersey": dict(color=(0.34, 0.36, 0.40), roughness=0.95, sheen=0.6, weave="plain", thread=0.008, depth=0.3),
     "leather": dict(color=(0.16, 0.06, 0.025), roughness=0.45, weave="grain", thread=0.012, depth=0.3),
