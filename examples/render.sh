@@ -65,7 +65,7 @@ case $out in
     if ((${#missing[@]})); then render "$folder/render" "${missing[@]}"; fi
     rate=$(sed -n 's/^ *"frame_rate": \([0-9.]*\),*/\1/p' "$folder/run.json" | head -n 1)
     codec=(-c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart)
-    if [[ $out == *.webp ]]; then codec=(-c:v libwebp_anim -quality 60 -loop 0); fi
+    if [[ $out == *.webp ]]; then codec=(-c:v libwebp_anim -quality 80 -loop 0); fi
     number=0
     for frame in "${frames[@]}"; do
       ln -s "$(realpath "$(printf '%s/render/%04d.png' "$folder" "$frame")")" "$work/$((number++)).png"

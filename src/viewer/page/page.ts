@@ -22,7 +22,7 @@ import { LIGHT, ThemeChoice } from './panel/theme';
 import { Toolbar } from './panel/toolbar';
 import { ViewPanel } from './panel/view_panel';
 
-const PLOT_MS = 100;
+const PLOT_MS = 200;
 const ERROR_MS = 8000;
 const DRAGGED_KEY = 'sprung-dragged';
 
