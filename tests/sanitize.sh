@@ -23,7 +23,7 @@ address() {
   # Laws of motion over many steps of the same code; they take a third of the time.
   local long='^(LimitEnergy|LimitMotion|Materials|ImplicitEuler|HangingChain|AngleBends|CollidingBodies)\.'
   # Programs that are not built register a test named ..._NOT_BUILT.
-  ctest --preset asan --parallel "$(nproc)" --exclude-regex "$long|^Style\.|^Install\.|^Meshes\.|^Page\.|^Example\.|^Blender\.|^Completion\.|_NOT_BUILT"
+  ctest --preset asan --parallel "$(nproc)" --exclude-regex "$long|^Style\.|^Install\.|^Meshes\.|^Page\.|^Example\.|^Blender\.|^Completion\.|^Formats\.|OnSlurm|_NOT_BUILT"
 }
 
 # Sources that choose a number of threads hold the tests that run with more than one.
