@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the examples and makes all pictures and the animation of README.md and of this folder by render.sh: pictures.sh [NAME...]
-# NAME is an example, materials, or animation. All of them take about an hour on two cores. SAMPLES=16 is quicker.
+# NAME is an example, materials, or animation. All of them took 80 minutes on two busy cores. SAMPLES=16 is quicker.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 samples=${SAMPLES:-64}
